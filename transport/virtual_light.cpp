@@ -8,7 +8,7 @@
 namespace bnvpl {
 
 VplLights makeVplLights(const VplTable& lit, const RayScene& rays, float clamp, LightKind kind,
-                        const VplGroups& groups) {
+                        const VplGroups& groups, float oneRadius) {
   VplLights lights;
   lights.groups = groups.groups;
   lights.kind = kind;
@@ -30,8 +30,8 @@ VplLights makeVplLights(const VplTable& lit, const RayScene& rays, float clamp, 
       lights.intensity.push_back(lit.flux[i] * (part / kPi));
       for (uint32_t g = 0; g < groups.groups; ++g)
         lights.groupIntensity.push_back(groups.flux[i * groups.groups + g] * (part / kPi));
-      lights.clamp2.push_back(
-          std::max(clamp * clamp * lit.radius[i] * lit.radius[i], nearest * nearest));
+      const float radius = oneRadius > 0.0f ? oneRadius : lit.radius[i];
+      lights.clamp2.push_back(std::max(clamp * clamp * radius * radius, nearest * nearest));
     }
   }
   return lights;

@@ -89,18 +89,11 @@ def options_of(c: Configuration) -> dict[str, str]:
     }
 
 
-def summaries_of(runner: Runner, tool: str, slot: str) -> dict[str, str]:
-    """The methods that a tool lists for one of its options, with their summaries."""
-    spec = json.loads(
-        subprocess.run([runner.bin / tool, "--help-json"], capture_output=True, check=True).stdout
-    )
-    return {
-        m["name"]: m["summary"] for s in spec["slots"] if s["name"] == slot for m in s["methods"]
-    }
-
-
 def methods_of(runner: Runner, tool: str, slot: str) -> list[str]:
-    return list(summaries_of(runner, tool, slot))
+    """The methods that a tool lists for one of its options."""
+    command = [runner.bin / tool, "--methods", "--json"]
+    spec = json.loads(subprocess.run(command, capture_output=True, check=True).stdout)
+    return [m["name"] for s in spec["slots"] if s["name"] == slot for m in s["methods"]]
 
 
 def shadow_rays(runner: Runner, view: View, c: Configuration, seed: int) -> float:

@@ -133,7 +133,7 @@ class QuickRun(unittest.TestCase):
     def test_every_gather_has_a_row(self) -> None:
         spec = json.loads(
             subprocess.run(
-                [BIN / "vpl-render", "--help-json"], capture_output=True, check=True
+                [BIN / "vpl-render", "--methods", "--json"], capture_output=True, check=True
             ).stdout
         )
         gathers = {

@@ -88,12 +88,36 @@ TEST_F(Help, JsonTellsKindDefaultRangeAndNeeds) {
   EXPECT_EQ(option("only").at("choices"), HelpJson({"all", "direct", "indirect"}));
   EXPECT_EQ(option("allocate").at("choices"), HelpJson({"on", "off"}));
   EXPECT_EQ(option("error").at("methods").at("gather"),
-            HelpJson({"lightcuts", "paquette", "tilecuts"}));
+            HelpJson({"illumination-cut", "lightcuts", "multidimensional", "paquette", "tilecuts"}));
   EXPECT_EQ(option("quiet").at("kind"), "flag");
   EXPECT_EQ(option("json").at("needs"), "--estimate");
   EXPECT_EQ(option("view").at("excludes"), "--camera");
   EXPECT_TRUE(option("define").at("repeat"));
   EXPECT_EQ(option("threads").at("group"), "Speed and time");
+}
+
+TEST_F(Help, MethodsAreListedWithOptionsAndNeeds) {
+  for (const char* name : {"vpl-place", "vpl-eliminate", "vpl-estimate", "vpl-render"}) {
+    const HelpJson listed = HelpJson::parse(tool(name, "--methods --json").out);
+    EXPECT_EQ(listed.at("slots"), describedBy(name).at("slots")) << name;
+    const std::string lines = tool(name, "--methods").out;
+    for (const HelpJson& slot : listed.at("slots")) {
+      for (const HelpJson& method : slot.at("methods")) {
+        EXPECT_TRUE(contains(lines, "  " + std::string(method.at("name")) + "  ")) << name;
+        EXPECT_TRUE(contains(lines, method.at("summary"))) << name;
+      }
+    }
+  }
+  const auto needsOf = [&](const std::string& name, const std::string& method) {
+    for (const HelpJson& slot : describedBy(name).at("slots")) {
+      for (const HelpJson& m : slot.at("methods"))
+        if (m.at("name") == method) return m.at("needs");
+    }
+    return HelpJson();
+  };
+  EXPECT_EQ(needsOf("vpl-eliminate", "rejection"), HelpJson({"scene"}));
+  EXPECT_EQ(needsOf("vpl-render", "vpl"), HelpJson({"lit"}));
+  EXPECT_EQ(needsOf("vpl-render", "path"), HelpJson::array());
 }
 
 TEST_F(Help, FitsAPageAndHasExamples) {

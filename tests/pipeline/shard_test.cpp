@@ -81,6 +81,8 @@ TEST_F(ShardRun, RenderGivesTheSameBytesInAnyNumber) {
                        "guided.exr", {3});
   expectTheSameInParts("vpl-render", render + vpls + " --spp 2 --gather interleaved",
                        "interleaved.exr", {3});
+  expectTheSameInParts("vpl-render", render + vpls + " --spp 2 --gather multidimensional",
+                       "multidimensional.exr", {3});
   expectTheSameInParts("vpl-render", render + " --integrator path --spp 70", "path.exr", {1, 7});
   expectTheSameInParts("vpl-render", render + " --integrator light --spp 16", "light.exr",
                        {1, 7, 64});

@@ -8,13 +8,13 @@ namespace bnvpl::test {
 
 struct GatherOf {
   // Takes `options` like vpl-render; borrows the world and the VPLs. A gather that inspects the
-  // film gets no points.
+  // film gets no points, and one that inspects the table of the VPLs gets no rows.
   GatherOf(const World& world, const VplLights& vpls, const Given& options)
       : tree(buildLightTree(vpls, 1)), point(world.rays, vpls, tree) {
     const Values values = resolve(renderSpec(), options);
     const ProgressFn silent;
     gather = methodNamed(gatherMethods(), values[OptionKey<std::string>{"gather"}])
-                 .make({world.rays, vpls, tree, 1,
+                 .make({world.rays, world.lights, lit, vpls, tree, 1,
                         [this] {
                           looksAtFilm = true;
                           return PrimaryPoints{};
@@ -27,10 +27,13 @@ struct GatherOf {
     TileReceivers tile;
     tile.pixels = 1;
     tile.bsdf = one;
+    const Vec3 whole(1.0f);
+    tile.weight = {&whole, 1};
     std::vector<Gathered> out(1);
     gather.tile(tile, out);
     return out[0];
   }
+  VplTable lit;
   bool looksAtFilm = false;
   LightTree tree;
   PointGather point;

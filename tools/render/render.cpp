@@ -91,6 +91,13 @@ bool sendsPhotons(const Values& options) {
   return integratorOf(options).photons && onlyOf(options) != Only::Direct;
 }
 
+// The last text given for an option; null if there is none.
+const std::string* textGiven(const Given& given, std::string_view name) {
+  const auto last = std::find_if(given.rbegin(), given.rend(),
+                                 [&](const auto& option) { return option.first == name; });
+  return last == given.rend() ? nullptr : &last->second;
+}
+
 // The options that --for-denoiser stands for, spelled out.
 Given withDenoiserOptions(const Given& given) {
   const Values options = resolve(renderSpec(), given);
@@ -101,9 +108,7 @@ Given withDenoiserOptions(const Given& given) {
   }
   Given all = given;
   if (options.has(kReuseKey)) {
-    const auto typed =
-        std::ranges::find(given, kReuseKey.name, [](const auto& g) { return g.first; });
-    if (typed != given.end() && options[kReuseKey] != 1) {
+    if (textGiven(given, kReuseKey.name) && options[kReuseKey] != 1) {
       throw UsageError("--for-denoiser: --reuse " + std::to_string(options[kReuseKey]) +
                        " gives neighbouring pixels the same noise; leave one of them out");
     }
@@ -112,6 +117,19 @@ Given withDenoiserOptions(const Given& given) {
   const std::string& layers = options[kLayersKey];
   all.emplace_back(kLayersKey.name,
                    layers + (layers.empty() ? "" : ",") + "denoise_albedo,denoise_normal");
+  return all;
+}
+
+// A pixel's sum tells nothing of its samples, which a control variate would correct.
+Given withPixelSumOptions(const Given& given) {
+  const Values options = resolve(renderSpec(), given);
+  if (!gathersPixelSums(options) || !options.has(kControlKey)) return given;
+  if (const std::string* control = textGiven(given, kControlKey.name);
+      control && *control != "none")
+    throw UsageError("--control " + *control + " needs the light of each sample, and --gather " +
+                     options[kGatherSlot] + " finds the sum of a pixel's; leave one of them out");
+  Given all = given;
+  all.emplace_back(kControlKey.name, "none");
   return all;
 }
 
@@ -153,8 +171,8 @@ const StageSpec& renderSpec() {
 }
 
 Values resolveRender(const Given& given) {
-  Values options = resolve(renderSpec(), withDenoiserOptions(given));
-  const bool limited = std::ranges::any_of(given, [](const auto& g) { return g.first == "spp"; });
+  Values options = resolve(renderSpec(), withPixelSumOptions(withDenoiserOptions(given)));
+  const bool limited = textGiven(given, kSppOption.name) != nullptr;
   if (budgetOf(options) && !limited) options.set(kSppOption, static_cast<uint64_t>(kUnlimitedSpp));
   return options;
 }

@@ -68,7 +68,8 @@ Json describeSlots(const StageSpec& spec) {
     for (const MethodEntry& m : slot.methods) {
       Json options = Json::array();
       for (const Option& o : m.options) options.push_back(describeMethodOption(o));
-      methods.push_back({{"name", m.name}, {"summary", m.summary}, {"options", options}});
+      methods.push_back(
+          {{"name", m.name}, {"summary", m.summary}, {"needs", m.needs}, {"options", options}});
     }
     slots.push_back({{"name", slot.name},
                      {"default", slot.defaultText},
@@ -77,6 +78,24 @@ Json describeSlots(const StageSpec& spec) {
                      {"methods", methods}});
   }
   return slots;
+}
+
+// A line for every method, under the option that chooses it.
+std::string listMethods(const StageSpec& spec) {
+  constexpr size_t kNameColumns = 20;
+  std::string text;
+  for (const MethodSlot& slot : spec.slots) {
+    const std::string needs = needText(slot.needs);
+    text += (text.empty() ? "--" : "\n\n--") + std::string(slot.name) + ": " +
+            std::string(slot.help) + "; default " + std::string(slot.defaultText) +
+            (needs.empty() ? "" : "; needs " + needs);
+    for (const MethodEntry& m : slot.methods) {
+      std::string name = "\n  " + std::string(m.name);
+      name.resize(std::max(name.size() + 2, kNameColumns), ' ');
+      text += name + std::string(m.summary);
+    }
+  }
+  return text;
 }
 
 Json describeCli(const CLI::App& cli, const HelpFormatter& formatter) {
@@ -136,6 +155,22 @@ void addExamples(CLI::App& cli, const std::vector<Example>& examples) {
 void setStage(CLI::App& cli, const StageSpec& spec) {
   formatterOf(cli).spec = &spec;
   addExamples(cli, spec.examples);
+  inTopic(Topic::Expert, cli.add_flag_callback(
+                             "--methods",
+                             [&cli, &spec] {
+                               const CLI::Option* json = cli.get_option_no_throw("--json");
+                               const bool asJson = json && json->count() > 0;
+                               throw CLI::CallForVersion(
+                                   asJson ? jsonText({{"tool", spec.tool},
+                                                      {"version", BNVPL_VERSION},
+                                                      {"slots", describeSlots(spec)}},
+                                                     2)
+                                          : listMethods(spec),
+                                   CLI::ExitCodes::Success);
+                             },
+                             "list the methods and exit; with --json also their options and what "
+                             "they need"))
+      ->configurable(false);
 }
 
 }  // namespace bnvpl

@@ -225,6 +225,7 @@ class Values {
 struct MethodEntry {
   std::string_view name, summary;
   std::span<const Option> options;
+  std::vector<std::string_view> needs = {};  // inputs that not all methods of the slot need
 };
 
 // A set of methods, one of which is selected by an option.

@@ -23,11 +23,24 @@ struct Method {
   Make make;
 };
 
+// Inputs that a method needs by its own fields: "scene", "lit".
+template <typename M>
+std::vector<std::string_view> needsOf(const M& method) {
+  std::vector<std::string_view> needs;
+  if constexpr (requires { method.needsScene; }) {
+    if (method.needsScene) needs.push_back("scene");
+  }
+  if constexpr (requires { method.needsVpls; }) {
+    if (method.needsVpls) needs.push_back("lit");
+  }
+  return needs;
+}
+
 // The methods of a slot as entries of its StageSpec.
 template <typename M>
 std::vector<MethodEntry> entriesOf(std::span<const M* const> methods) {
   std::vector<MethodEntry> entries;
-  for (const M* m : methods) entries.push_back({m->name, m->summary, m->options});
+  for (const M* m : methods) entries.push_back({m->name, m->summary, m->options, needsOf(*m)});
   return entries;
 }
 

@@ -56,6 +56,13 @@ struct Compensation {
   explicit operator bool() const { return uncovered != nullptr; }
 };
 
+// Radius of a disk with the mean area of the VPLs' disks; 0 without VPLs.
+inline float commonRadius(const VplTable& lit) {
+  double squares = 0.0;
+  for (const float r : lit.radius) squares += double{r} * double{r};
+  return lit.size() == 0 ? 0.0f : static_cast<float>(std::sqrt(squares / double(lit.size())));
+}
+
 // Inputs of a method, borrowed until the image is done.
 struct CompensateInputs {
   const VplTable& lit;
@@ -65,7 +72,14 @@ struct CompensateInputs {
   const VplGroups& groups;  // the VPLs' flux by light group; empty: not told apart
 };
 
-using CompensateMethod = Method<Compensation (*)(const CompensateInputs&, const Values&)>;
+struct CompensateMethod {
+  std::string_view name, summary;
+  std::span<const Option> options;
+  Compensation (*make)(const CompensateInputs&, const Values&);
+  // VPLs have commonRadius() instead of their own, so that what they leave out of the light between
+  // two points depends on these alone.
+  bool oneSize = false;
+};
 // Defined in the build folder by cmake/Methods.cmake, from the folders beside this file.
 std::span<const CompensateMethod* const> compensateMethods();
 

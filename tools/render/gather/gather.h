@@ -14,6 +14,7 @@
 #include "tools/render/light_tree/light_tree.h"
 #include "tools/render/sample.h"
 #include "transport/bsdf.h"
+#include "transport/lights.h"
 #include "transport/virtual_light.h"
 
 namespace bnvpl {
@@ -34,6 +35,9 @@ struct TileReceivers : TileLayout {
   GroupSink groupsOf(size_t receiver) const {
     return {groupSums ? groupSums + receiver * groups : nullptr};
   }
+  // Share of the receiver's radiance in the sum over its pixel's samples, for methods that answer
+  // with that sum; negative where the pixel filter is.
+  std::span<const Vec3> weight = {};
   // Variance, relative to the tile's squared light, that a further shadow ray of a sample must
   // remove to be efficient (SampleAllocation); 0 if unknown.
   double marginalCost = 0.0;
@@ -42,7 +46,8 @@ struct TileReceivers : TileLayout {
   float medianTileLight = std::numeric_limits<float>::infinity();
 };
 
-// One result for each receiver.
+// One result for each receiver, or of methods with `pixelSum` the weighted sum of each pixel, in
+// place of its first sample.
 using GatherTile = std::function<void(const TileReceivers&, std::span<Gathered>)>;
 // Light of the VPLs at a vertex of a random path: an unbiased estimate with `draws` (> 0) VPLs. The
 // sink receives its radiance by light group.
@@ -66,6 +71,8 @@ struct PrimaryPoints {
 // Inputs of a method, borrowed until the image is done.
 struct GatherInputs {
   const RayScene& rays;
+  const LightSet& lights;
+  const VplTable& lit;  // rows that `vpls` names
   const VplLights& vpls;
   const LightTree& tree;  // empty if there are no VPLs
   uint64_t seed;
@@ -81,6 +88,7 @@ struct GatherMethod {
   // Smooths the gathered light over the film; null or an empty filter: it stays as it is.
   FilmFilter (*filmFilter)(const Values&) = nullptr;
   bool lightGroups = true;  // fills TileReceivers::groupSums
+  bool pixelSum = false;  // treats all samples of a pixel as one, with their weights
 };
 // Defined in the build folder by cmake/Methods.cmake, from the folders beside this file.
 std::span<const GatherMethod* const> gatherMethods();

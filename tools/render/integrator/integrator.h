@@ -54,11 +54,20 @@ inline bool redistributesFireflies(const Values& options) {
   return options.has(kFirefliesKey) && options[kFirefliesKey] == "redistribute";
 }
 
-// The film filter of the gather; empty where there is none.
+// The gather of a run; null where nothing is gathered.
+inline const GatherMethod* gatherOf(const Values& options) {
+  if (!options.has(kGatherSlot)) return nullptr;
+  return &methodNamed(gatherMethods(), options[kGatherSlot]);
+}
+// Its film filter; empty where there is none.
 inline FilmFilter gatherFilterOf(const Values& options) {
-  if (!options.has(kGatherSlot)) return {};
-  const GatherMethod& gather = methodNamed(gatherMethods(), options[kGatherSlot]);
-  return gather.filmFilter ? gather.filmFilter(options) : FilmFilter{};
+  const GatherMethod* gather = gatherOf(options);
+  return gather && gather->filmFilter ? gather->filmFilter(options) : FilmFilter{};
+}
+// Whether it finds the sum over a pixel's samples instead of their light.
+inline bool gathersPixelSums(const Values& options) {
+  const GatherMethod* gather = gatherOf(options);
+  return gather && gather->pixelSum;
 }
 
 struct IntegratorMethod {

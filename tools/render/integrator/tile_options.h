@@ -24,6 +24,7 @@ constexpr TextOption controlOption(std::string_view defaultText) {
                                "control variate of indirect light within a pixel: the VPLs' "
                                "prediction along more camera rays, or none"));
 }
+inline constexpr OptionKey<std::string> kControlKey = controlOption("none").key();
 constexpr SwitchOption allocateOption(std::string_view help) {
   return neededBy({Condition{"only", "all|indirect"}, Condition{"direct-samples", "0"}},
                   switchOption("allocate", "on", help));

@@ -4,10 +4,6 @@
 
 namespace bnvpl {
 
-namespace {
-
-// Largest cosine between `axis` and any direction from `at` into the box (Walter et al. 2005,
-// section 4.1).
 float maxCosine(const Bounds& box, Vec3 at, const AxisFrame& frame) {
   const Vec3 center = box.center() - at, half = 0.5f * box.extent();
   // Bounds of the box in the frame, for three axes at once. They contain the box, so the bound
@@ -29,6 +25,8 @@ float maxCosine(const Bounds& box, Vec3 at, const AxisFrame& frame) {
   return highest[2] /
          std::sqrt(nearest[0] * nearest[0] + nearest[1] * nearest[1] + highest[2] * highest[2]);
 }
+
+namespace {
 
 // Upper bound of the emission of the cluster's VPLs from anywhere in the box towards `at`, relative
 // to their intensity.

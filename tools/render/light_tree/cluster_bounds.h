@@ -13,6 +13,10 @@ struct ClusterReceiver {
   AxisFrame normal;
 };
 
+// Largest cosine between the frame's axis and any direction from `at` into the box (Walter et al.
+// 2005, section 4.1).
+float maxCosine(const Bounds& box, Vec3 at, const AxisFrame& frame);
+
 // Upper bound of a cluster's contribution without 1/d^2 and visibility: BSDF, cosines and
 // intensity, summed over the channels, W/sr.
 float sentBound(const LightNode& n, const ClusterReceiver& receiver);

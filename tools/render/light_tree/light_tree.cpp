@@ -1,20 +1,17 @@
 #include "tools/render/light_tree/light_tree.h"
 
 #include <algorithm>
-#include <array>
 #include <numeric>
 #include <queue>
 
 #include "tools/common/files/streams.h"
 #include "tools/render/light_tree/normal_cone.h"
 #include "tools/render/light_tree/orientation_split.h"
+#include "tools/render/light_tree/tree_building.h"
 
 namespace bnvpl {
 
 namespace {
-
-// Length of a unit normal in the space that is split, over the diagonal of the VPLs' bounds.
-constexpr float kNormalScale = 0.125f;
 
 class Builder {
  public:
@@ -59,33 +56,13 @@ class Builder {
 
   // Splits into halves by count where one part would be empty.
   size_t split(size_t begin, size_t end) {
-    const size_t position =
-        by_ == LightSplit::Middle
-            ? splitAtMiddle(begin, end)
-            : begin + splitByOrientation(vpls_, std::span(order_).subspan(begin, end - begin));
-    return position > begin && position < end ? position : begin + (end - begin) / 2;
-  }
-
-  // Splits at the middle of the longest of six sides.
-  size_t splitAtMiddle(size_t begin, size_t end) {
-    std::array<float, 6> low, high;
-    low.fill(INFINITY);
-    high.fill(-INFINITY);
-    for (size_t k = begin; k < end; ++k) {
-      for (size_t a = 0; a < 6; ++a) {
-        low[a] = std::min(low[a], coordinate(order_[k], a));
-        high[a] = std::max(high[a], coordinate(order_[k], a));
-      }
+    const std::span<uint32_t> elements = std::span(order_).subspan(begin, end - begin);
+    if (by_ == LightSplit::Middle) {
+      return begin + splitNode(elements,
+                               [&](uint32_t i, size_t axis) { return coordinate(i, axis); });
     }
-    size_t axis = 0;
-    for (size_t a = 1; a < 6; ++a) {
-      if (high[a] - low[a] > high[axis] - low[axis]) axis = a;
-    }
-    const float middle = 0.5f * (low[axis] + high[axis]);
-    const auto at = [&](size_t k) { return order_.begin() + static_cast<std::ptrdiff_t>(k); };
-    const auto cut = std::stable_partition(
-        at(begin), at(end), [&](uint32_t i) { return coordinate(i, axis) < middle; });
-    return static_cast<size_t>(cut - order_.begin());
+    const size_t first = splitByOrientation(vpls_, elements);
+    return begin + (first > 0 && first < elements.size() ? first : elements.size() / 2);
   }
 
   LightNode leafOf(uint32_t i) const {
@@ -108,10 +85,8 @@ class Builder {
     const NormalCone cone = merged({a.axis, a.cosHalfAngle}, {b.axis, b.cosHalfAngle});
     n.axis = cone.axis;
     n.cosHalfAngle = cone.cosHalfAngle;
+    n.sinHalfAngle = cone.sinHalfAngle();
     n.frame = AxisFrame(n.axis);
-    n.sinHalfAngle = n.cosHalfAngle <= 0.0f
-                         ? 1.0f
-                         : std::sqrt(std::max(0.0f, 1.0f - n.cosHalfAngle * n.cosHalfAngle));
     n.intensity = a.intensity + b.intensity;
     n.kind = a.kind;
     n.clamp2 = std::min(a.clamp2, b.clamp2);

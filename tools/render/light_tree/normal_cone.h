@@ -8,9 +8,14 @@
 
 namespace bnvpl {
 
+// All unit vectors whose cosine with the axis is at least cosHalfAngle.
 struct NormalCone {
   Vec3 axis;
   float cosHalfAngle = 1.0f;
+  float sinHalfAngle() const {  // of at most a right angle
+    return cosHalfAngle <= 0.0f ? 1.0f
+                                : std::sqrt(std::max(0.0f, 1.0f - cosHalfAngle * cosHalfAngle));
+  }
 };
 
 // Smallest cone that contains both cones.

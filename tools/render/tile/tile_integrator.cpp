@@ -125,13 +125,22 @@ void TileIntegrator::gatherVpls(const TileSamples& tile, const ShadingPoints& po
                            static_cast<float>(std::sqrt(3.0 * allocation.floorLight));
     receivers.medianTileLight = static_cast<float>(std::sqrt(3.0 * allocation.medianLight));
   }
+  std::vector<Vec3> weights;
+  if (parts_.gathersPixelSums) {
+    for (const SpecularPath& path : points.paths) weights.push_back(path.throughput);
+    receivers.weight = weights;
+  }
   parts_.gather(receivers, gathered);
+  // Every sample of a pixel gets the same part of the pixel's sum.
+  const Vec3 part(static_cast<float>(tile.pixels) / static_cast<float>(gathered.size()));
   for (size_t i = 0; i < gathered.size(); ++i) {
     RadianceSample& out = tile.samples[i].radiance;
-    const Vec3 light = points.paths[i].throughput * gathered[i].radiance;
-    out.indirect += light;
-    if (parts_.gathersForFilter) out.gathered += light;
-    out.clamped += points.paths[i].throughput * gathered[i].clamped;
+    const bool sums = parts_.gathersPixelSums;
+    const Gathered& from = gathered[sums ? i % tile.pixels : i];
+    const Vec3 factor = sums ? part : points.paths[i].throughput;
+    out.indirect += factor * from.radiance;
+    if (parts_.gathersForFilter) out.gathered += factor * from.radiance;
+    out.clamped += factor * from.clamped;
     out.cut += gathered[i].cut;
     out.shadowRays += gathered[i].shadowRays;
     out.counts = gathered[i].counts;

@@ -26,6 +26,7 @@ using ControlVariateFn =
 struct TileParts {
   GatherTile gather;  // VPLs
   bool gathersForFilter = false;  // a film filter smooths their light
+  bool gathersPixelSums = false;  // finds the sum over a pixel's samples
   std::unique_ptr<const IndirectRays> rays;
   unsigned raysEach = 0;  // from each shading point
   unsigned reuse = 1;     // samples in a group that reuses its vertices; 1: no reuse

@@ -70,10 +70,9 @@ struct Parts {
 Gather makeGather(const IntegratorInputs& in, const Values& options, const FilmRays& film,
                   Parts& parts) {
   parts.tree = buildLightTree(parts.vpls, in.seed);
-  Gather gather = methodNamed(gatherMethods(), options[kGatherSlot])
-                      .make({in.rays, parts.vpls, parts.tree, in.seed,
-                             [film] { return film.all(); }, in.progress},
-                            options);
+  Gather gather = gatherOf(options)->make({in.rays, in.lights, in.lit, parts.vpls, parts.tree,
+                                           in.seed, [film] { return film.all(); }, in.progress},
+                                          options);
   if (!gather.point) {
     parts.point = std::make_unique<PointGather>(in.rays, parts.vpls, parts.tree);
     gather.point = [&point = *parts.point](const Bsdf& bsdf, unsigned draws, Rng& rng,
@@ -98,12 +97,14 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   const float clamp = indirect ? options.real32(kClampOption) : 1.0f;
   const LightKind light = indirect ? lightKindNamed(options[kLightOption]) : LightKind{};
   const auto parts = std::make_shared<Parts>();
-  parts->vpls = makeVplLights(in.lit, in.rays, clamp, light, in.litGroups);
+  const CompensateMethod* compensate =
+      options.has(kCompensateSlot) ? &methodNamed(compensateMethods(), options[kCompensateSlot])
+                                   : nullptr;
+  parts->vpls = makeVplLights(in.lit, in.rays, clamp, light, in.litGroups,
+                              compensate && compensate->oneSize ? commonRadius(in.lit) : 0.0f);
   Compensation compensation;
-  if (options.has(kCompensateSlot)) {
-    compensation = methodNamed(compensateMethods(), options[kCompensateSlot])
-                       .make({in.lit, in.rays, clamp, light, in.litGroups}, options);
-  }
+  if (compensate)
+    compensation = compensate->make({in.lit, in.rays, clamp, light, in.litGroups}, options);
   TileParts tile;
   // With --only direct, direct samples trace BSDF rays of their own.
   if (options.has(kNearFieldRaysOption) && (compensation || hasSpecularLobes(in.rays.scene())))
@@ -118,6 +119,7 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   Gather gather = indirect ? makeGather(in, options, filmRays, *parts) : Gather{};
   tile.gather = std::move(gather.tile);
   tile.gathersForFilter = static_cast<bool>(gatherFilterOf(options));
+  tile.gathersPixelSums = gathersPixelSums(options);
   const bool learned = in.only != Only::Indirect && options[kDirectOption] == "learned";
   const bool controlled = indirect && options[kControlOption] == "vpls";
   const PrimaryPoints film = controlled || learned ? filmRays.all() : PrimaryPoints{};
@@ -141,7 +143,7 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
               [parts](const TileSamples& samples) {
                 parts->integrator->render(samples, parts->allocation);
               },
-          .wholePixels = gather.wholePixels,
+          .wholePixels = gather.wholePixels || gathersPixelSums(options),
           .vpls = parts->vpls.vplCount,
           .emissionPoints = parts->vpls.size(),
           .caustics = caustics};

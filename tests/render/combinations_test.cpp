@@ -1,0 +1,69 @@
+// The combinations of methods: each works, or is refused in one sentence that names the methods.
+#include <gtest/gtest.h>
+
+#include "core/errors.h"
+#include "tests/support/pipeline.h"
+#include "tools/render/compensate/compensate.h"
+#include "tools/render/gather/gather.h"
+#include "transport/virtual_light_kinds.h"
+
+namespace bnvpl::test {
+namespace {
+
+class Combinations : public testing::Test {
+ protected:
+  Combinations() : world("cornell/scene.toml") {
+    world.scene.film = {16, 12};
+    lit = litVpls(world, {{"count", "200"}}, {{"photons", "50k"}}, {{"count", "4k"}});
+  }
+  // The mean of an image, or nothing if the combination is refused.
+  std::optional<double> indirect(const Given& options) const {
+    try {
+      const FilmStats stats =
+          renderVpls(
+              world, lit,
+              with({{"only", "indirect"}, {"fireflies", "keep"}, {"allocate", "off"}}, options))
+              .stats;
+      EXPECT_EQ(stats.nonFinite, 0u);
+      return stats.indirect;
+    } catch (const UsageError& refused) {
+      const std::string text = refused.what();
+      EXPECT_EQ(text.find('\n'), std::string::npos) << text;
+      EXPECT_NE(text.find(options.front().second), std::string::npos) << text;
+      return {};
+    }
+  }
+  World world;
+  VplTable lit;
+};
+
+TEST_F(Combinations, EveryGatherWithEveryKindOfLightAndCompensation) {
+  for (const std::string_view kind : LightKinds::names) {
+    for (const CompensateMethod* compensate : compensateMethods()) {
+      const Given rest{{"light", std::string(kind)},
+                       {"compensate", std::string(compensate->name)},
+                       {"spp", "2"}};
+      const double all = *indirect(with({{"gather", "all"}}, rest));
+      for (const GatherMethod* gather : gatherMethods()) {
+        const auto ours = indirect(with({{"gather", std::string(gather->name)}}, rest));
+        if (!ours) continue;
+        EXPECT_NEAR(*ours / all, 1.0, 0.15) << gather->name << kind << compensate->name;
+      }
+    }
+  }
+}
+
+TEST_F(Combinations, EveryGatherInPassesAndCrops) {
+  for (const Given& rest :
+       {Given{{"passes", "2"}}, Given{{"spp", "2"}, {"crop", "3,2,13,10"}, {"only", "indirect"}}}) {
+    const double all = *indirect(with({{"gather", "all"}}, rest));
+    for (const GatherMethod* gather : gatherMethods()) {
+      const auto ours = indirect(with({{"gather", std::string(gather->name)}}, rest));
+      if (!ours) continue;
+      EXPECT_NEAR(*ours / all, 1.0, 0.15) << gather->name << rest.front().first;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace bnvpl::test

@@ -1,0 +1,61 @@
+#include <gtest/gtest.h>
+
+#include "tests/support/pipeline.h"
+
+namespace bnvpl::test {
+namespace {
+
+// Mean indirect light over fresh sets of VPLs from the lights, and its standard error.
+struct MeanLight {
+  double mean = 0.0, error = 0.0;
+};
+MeanLight overSets(const World& world, const Given& options, uint64_t sets = 12) {
+  double sum = 0.0, squares = 0.0;
+  for (uint64_t seed = 1; seed <= sets; ++seed) {
+    const VplTable lit =
+        placeVpls(world, {{"method", "light"}, {"count", "2000"}, {"seed", typed(seed)}}).table;
+    const double light =
+        indirectByVpls(world, lit, with({{"spp", "1"}, {"seed", typed(seed)}}, options));
+    sum += light, squares += light * light;
+  }
+  const double n = double(sets), mean = sum / n;
+  return {mean, std::sqrt(std::max(0.0, squares / n - mean * mean) / (n - 1.0))};
+}
+
+// The bound moves light between VPLs and rays, and its mean over sets of VPLs stays that of paths.
+TEST(KolligKeller, IsUnbiasedWhateverTheBound) {
+  World world("cornell/scene.toml");
+  world.scene.film = {24, 24};
+  const double path = indirectByPaths(world, {{"spp", "1024"}});
+  for (const char* light : {"point", "disk"}) {
+    for (const char* clamp : {"0.5", "2", "8"}) {
+      const MeanLight ours =
+          overSets(world, {{"compensate", "kollig-keller"}, {"clamp", clamp}, {"light", light}});
+      EXPECT_NEAR(ours.mean, path, 3.0 * ours.error + 0.003 * path) << light << clamp;
+      EXPECT_LT(ours.error, 0.02 * path);
+    }
+  }
+  const MeanLight none = overSets(world, {{"compensate", "none"}, {"clamp", "8"}});
+  EXPECT_LT(none.mean, 0.9 * path);
+}
+
+TEST(KolligKeller, AllVplsHaveOneSize) {
+  World world("cornell/scene.toml");
+  world.scene.film = {16, 16};
+  VplTable lit = litVpls(world, {{"count", "200"}}, {{"photons", "50k"}}, {{"count", "4k"}});
+  const auto shown = [&](const char* compensate) {
+    return indirectByVpls(world, lit, {{"compensate", compensate}, {"clamp", "6"}});
+  };
+  const double before = shown("kollig-keller"), none = shown("none");
+  // The mean area is the same, but each VPL's own is not.
+  for (size_t i = 0; i + 1 < lit.size(); i += 2) {
+    const float r2 = lit.radius[i] * lit.radius[i] + lit.radius[i + 1] * lit.radius[i + 1];
+    lit.radius[i] = std::sqrt(0.1f * r2), lit.radius[i + 1] = std::sqrt(0.9f * r2);
+  }
+  const double ours = std::fabs(shown("kollig-keller") / before - 1.0);
+  EXPECT_LT(ours, 2e-3);  // light sampling at vertices asks for the radii, too
+  EXPECT_GT(std::fabs(shown("none") / none - 1.0), 4.0 * ours);
+}
+
+}  // namespace
+}  // namespace bnvpl::test

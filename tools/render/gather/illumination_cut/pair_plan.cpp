@@ -1,0 +1,215 @@
+#include "tools/render/gather/illumination_cut/pair_plan.h"
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <queue>
+
+#include "core/parallel.h"
+#include "tools/render/gather/shadow_test.h"
+
+namespace bnvpl::methods::gather::illumination_cut {
+
+namespace {
+
+// The estimate of the image: clusters of VPLs that light it, and receivers that share a value.
+constexpr size_t kImageClusters = 100, kImageReceivers = 16;
+// Least light of a receiver, over the mean of the image: darker ones allow the error of this one.
+constexpr double kFloor = 0.01;
+// Nodes of receivers from which the threads begin, and receivers up to which each traces a ray.
+constexpr size_t kStarts = 2000, kTraced = 8;
+
+class PairPlanner {
+ public:
+  PairPlanner(const GatherInputs& in, const PairOptions& options, PairPlan& plan)
+      : in_(in), options_(options), plan_(plan) {}
+
+  void run() {
+    placeReceivers();
+    if (plan_.tree.nodes.empty() || in_.tree.nodes.empty()) return;
+    estimateImage();
+    const std::vector<uint32_t> starts =
+        opened(kStarts, [](const ReceiverNode& n) { return double(n.end - n.begin); });
+    std::vector<std::vector<Found>> found(starts.size());
+    parallelFor(starts.size(), 1, [&](size_t k) { refine(starts[k], found[k]); });
+    std::vector<Found> all;
+    for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());
+    std::ranges::stable_sort(all, {}, [](const Found& f) { return f.receivers; });
+    plan_.begin.assign(plan_.tree.nodes.size() + 1, 0);
+    for (const Found& f : all) {
+      ++plan_.begin[f.receivers + 1];
+      plan_.pairs.push_back(f.pair);
+    }
+    std::partial_sum(plan_.begin.begin(), plan_.begin.end(), plan_.begin.begin());
+  }
+
+ private:
+  struct Found {
+    uint32_t receivers;
+    LightPair pair;
+  };
+
+  const Scene& scene() const { return in_.rays.scene(); }
+  // Receiver number k of a node's range.
+  const SurfacePoint& receiver(size_t k) const { return points_[plan_.tree.order[k]]; }
+
+  void placeReceivers() {
+    points_ = in_.primaryPoints().points;
+    std::erase_if(points_, [](const SurfacePoint& p) { return p.triangle == kNone; });
+    std::vector<ReceiverBsdf> bsdfs(points_.size());
+    parallelFor(points_.size(), 256,
+                [&](size_t i) { bsdfs[i] = ReceiverBsdf(Bsdf(scene(), points_[i])); });
+    plan_.normalScale = kNormalScale * scene().bounds.diagonal();
+    plan_.tree = buildReceiverTree(points_, bsdfs, plan_.normalScale);
+    plan_.begin.assign(plan_.tree.nodes.size() + 1, 0);
+  }
+
+  // Nodes of the receivers' tree: the one of largest weight is opened until there are `count`.
+  template <typename Weight>
+  std::vector<uint32_t> opened(size_t count, const Weight& weight) const {
+    std::priority_queue<std::pair<double, uint32_t>> open;
+    const auto push = [&](uint32_t n) {
+      open.emplace(plan_.tree.nodes[n].leaf() ? 0.0 : weight(plan_.tree.nodes[n]), n);
+    };
+    push(0);
+    while (open.size() < count && open.top().first > 0.0) {
+      const ReceiverNode& n = plan_.tree.nodes[open.top().second];
+      open.pop();
+      push(n.left), push(n.right);
+    }
+    std::vector<uint32_t> nodes;
+    for (; !open.empty(); open.pop()) nodes.push_back(open.top().second);
+    return nodes;
+  }
+
+  std::vector<uint32_t> imageClusters() const {
+    const auto weight = [&](uint32_t i) {
+      const LightNode& n = in_.tree.nodes[i];
+      return n.leaf() ? 0.0f : mean(n.intensity) * n.bounds.diagonal();
+    };
+    std::priority_queue<std::pair<float, uint32_t>> open;
+    open.emplace(weight(0), 0u);
+    while (open.size() < kImageClusters && open.top().first > 0.0f) {
+      const LightNode& n = in_.tree.nodes[open.top().second];
+      open.pop();
+      open.emplace(weight(n.left), n.left);
+      open.emplace(weight(n.right), n.right);
+    }
+    std::vector<uint32_t> cut;
+    for (; !open.empty(); open.pop()) cut.push_back(open.top().second);
+    return cut;
+  }
+
+  // Light of a receiver from a coarse cut, channels added.
+  float estimateAt(const SurfacePoint& point, const std::vector<uint32_t>& cut) const {
+    const Bsdf bsdf(scene(), point);
+    const ShadowTest test(in_.rays, in_.vpls, bsdf);
+    Gathered out;
+    for (const uint32_t c : cut) {
+      const LightNode& n = in_.tree.nodes[c];
+      test.add(n.representative, mean(n.intensity) / mean(in_.vpls.intensity[n.representative]),
+               out);
+    }
+    return out.radiance.x + out.radiance.y + out.radiance.z;
+  }
+
+  // Least light of the receivers of each node. Groups of receivers have that of one of them.
+  void estimateImage() {
+    const std::vector<uint32_t> cut = imageClusters();
+    const auto& nodes = plan_.tree.nodes;
+    least_.assign(nodes.size(), -1.0f);
+    std::vector<uint32_t> groups, below{0};
+    while (!below.empty()) {
+      const uint32_t i = below.back();
+      below.pop_back();
+      if (nodes[i].end - nodes[i].begin <= kImageReceivers) {
+        groups.push_back(i);
+      } else {
+        below.push_back(nodes[i].left), below.push_back(nodes[i].right);
+      }
+    }
+    parallelFor(groups.size(), 4, [&](size_t k) {
+      const ReceiverNode& n = nodes[groups[k]];
+      least_[groups[k]] = estimateAt(receiver((n.begin + n.end) / 2), cut);
+    });
+    double sum = 0.0;
+    for (const uint32_t g : groups) sum += double{least_[g]} * (nodes[g].end - nodes[g].begin);
+    const auto floor = static_cast<float>(kFloor * sum / double(points_.size()));
+    for (const uint32_t g : groups) least_[g] = std::max(floor, least_[g]);
+    // Groups hand their value down, and the least of their values up; children stand behind.
+    for (size_t i = 0; i < nodes.size(); ++i) {
+      if (nodes[i].leaf() || least_[i] < 0.0f) continue;
+      least_[nodes[i].left] = least_[nodes[i].right] = least_[i];
+    }
+    for (size_t i = nodes.size(); i-- > 0;) {
+      if (!nodes[i].leaf()) least_[i] = std::min(least_[nodes[i].left], least_[nodes[i].right]);
+    }
+  }
+
+  // Opens the larger of the two clusters until one VPL may represent its cluster for every receiver
+  // of the node.
+  void refine(uint32_t start, std::vector<Found>& found) const {
+    std::vector<std::array<uint32_t, 2>> open{{start, 0}};
+    while (!open.empty()) {
+      const auto [r, l] = open.back();
+      open.pop_back();
+      const ReceiverNode& receivers = plan_.tree.nodes[r];
+      const LightNode& lights = in_.tree.nodes[l];
+      const double bound = double{pairBound(lights, receivers, nullptr)};
+      // A single VPL represents itself without an error.
+      if (lights.leaf()) {
+        found.push_back({r, {l, false}});
+      } else if (bound < options_.error * double{least_[r]}) {
+        decideVisibility(r, l, found);
+      } else if (!receivers.leaf() && receivers.bounds.diagonal() > lights.bounds.diagonal()) {
+        open.push_back({receivers.right, l}), open.push_back({receivers.left, l});
+      } else {
+        open.push_back({r, lights.right}), open.push_back({r, lights.left});
+      }
+    }
+  }
+
+  // Rays from some receivers decide for all of a node where they agree.
+  void decideVisibility(uint32_t r, uint32_t l, std::vector<Found>& found) const {
+    const ReceiverNode& n = plan_.tree.nodes[r];
+    const size_t size = n.end - n.begin, rays = std::min(options_.visibilityRays, size / 2);
+    if (size <= kTraced || rays == 0) {
+      found.push_back({r, {l, false}});
+      return;
+    }
+    size_t seeing = 0;
+    for (size_t k = 0; k < rays; ++k) {
+      const SurfacePoint& p = receiver(n.begin + k * (size - 1) / std::max<size_t>(1, rays - 1));
+      seeing += sees(p, in_.tree.nodes[l].representative) ? 1 : 0;
+    }
+    if (seeing == rays) {
+      found.push_back({r, {l, true}});
+    } else if (seeing > 0) {
+      decideVisibility(n.left, l, found);
+      decideVisibility(n.right, l, found);
+    }
+  }
+
+  bool sees(const SurfacePoint& p, uint32_t vpl) const {
+    const Vec3 d = in_.vpls.position[vpl] - p.position;
+    if (dot(d, p.ns) <= 0.0f || dot(d, p.ng) <= 0.0f || dot(d, in_.vpls.normal[vpl]) >= 0.0f)
+      return false;
+    return !in_.rays.occluded(in_.rays.offsetOrigin(p.position, p.ng), in_.vpls.position[vpl]);
+  }
+
+  const GatherInputs& in_;
+  const PairOptions& options_;
+  PairPlan& plan_;
+  std::vector<SurfacePoint> points_;
+  std::vector<float> least_;  // for each node of the receivers' tree, channels added, W/(m2 sr)
+};
+
+}  // namespace
+
+PairPlan makePairPlan(const GatherInputs& in, const PairOptions& options) {
+  PairPlan plan;
+  PairPlanner(in, options, plan).run();
+  return plan;
+}
+
+}  // namespace bnvpl::methods::gather::illumination_cut

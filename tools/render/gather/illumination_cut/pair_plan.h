@@ -1,0 +1,51 @@
+// The pairs of clusters that IlluminationCut finds for the film: groups of receivers, each with a
+// cluster of VPLs that one of them may represent there.
+#pragma once
+
+#include "tools/render/gather/gather.h"
+#include "tools/render/gather/receiver_tree.h"
+
+namespace bnvpl::methods::gather::illumination_cut {
+
+struct PairOptions {
+  double error;           // bound on the error of a pair, over the light of the darkest receiver
+  size_t visibilityRays;  // max rays that decide on the visibility of a pair; 0: none does
+};
+
+// A cluster of VPLs for all receivers of a node.
+struct LightPair {
+  uint32_t light;
+  bool seen;  // every receiver sees the representative; else each traces a ray
+};
+
+struct PairPlan {
+  ReceiverTree tree;            // holds the film's points
+  float normalScale = 1.0f;     // scale of normals in the tree
+  std::vector<uint32_t> begin;  // range of each node's pairs; has one entry more
+  std::vector<LightPair> pairs;
+
+  // Calls fn for every pair of a point: those of the nodes on the way to the film's point that is
+  // about the nearest, in position and normal.
+  template <typename Fn>
+  void forEachPair(const SurfacePoint& at, const Fn& fn) const {
+    if (tree.nodes.empty()) return;
+    for (uint32_t node = 0;;) {
+      for (uint32_t k = begin[node]; k < begin[node + 1]; ++k) fn(pairs[k]);
+      const ReceiverNode& n = tree.nodes[node];
+      if (n.leaf()) return;
+      node = apart(tree.nodes[n.left], at) <= apart(tree.nodes[n.right], at) ? n.left : n.right;
+    }
+  }
+
+ private:
+  // Squared distance from a node, in the space in which the tree was split.
+  float apart(const ReceiverNode& n, const SurfacePoint& at) const {
+    const bool inside = dot(n.normals.axis, at.ns) >= n.normals.cosHalfAngle;
+    const float turned = inside ? 0.0f : lengthSquared(n.normals.axis - at.ns);
+    return n.bounds.distanceSquared(at.position) + normalScale * normalScale * turned;
+  }
+};
+
+PairPlan makePairPlan(const GatherInputs& in, const PairOptions& options);
+
+}  // namespace bnvpl::methods::gather::illumination_cut
