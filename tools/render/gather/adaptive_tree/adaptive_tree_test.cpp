@@ -15,7 +15,7 @@ TEST(AdaptiveTree, HasTheMeanOfAllVpls) {
 }
 
 TEST(AdaptiveTree, WithASingleDrawToo) {
-  expectMeanOfAll("adaptive-tree", 0.15, {{"split", "0"}});
+  expectMeanOfAll("adaptive-tree", 0.15, {{"split", "0"}}, false);
   EXPECT_EQ(counted("treesplits", {{"split", "0"}}), 0.0);
 }
 

@@ -14,7 +14,7 @@ TEST(Shirley, HasTheMeanOfAllVpls) {
 }
 
 TEST(Shirley, WithOneDimVplToo) {
-  expectMeanOfAll("shirley", 0.08, {{"threshold", "0.01"}, {"dim-rays", "1"}});
+  expectMeanOfAll("shirley", 0.08, {{"threshold", "0.01"}, {"dim-rays", "1"}}, false);
 }
 
 TEST(Shirley, IsTheSameForAnyThreadsAndShards) {
