@@ -168,7 +168,7 @@ class Completion(InstalledTest):
             expected = {f"--{o['name']}" for o in self.spec(tool)["options"]}
             expected |= {o["letter"] for o in self.spec(tool)["options"] if o["letter"]}
             self.assertEqual(self.bash(tool, "-"), expected)
-        self.assertEqual(self.bash("vpl-place", "--met"), {"--method"})
+        self.assertEqual(self.bash("vpl-place", "--met"), {"--method", "--methods"})
         self.assertEqual(self.bash("vpl-place", "--method", ""), {"camera", "light"})
         self.assertEqual(self.bash("vpl-place", "-o", ""), {"compopt"})
         self.assertEqual(self.bash("vpl-place", "-n", ""), set())
@@ -230,7 +230,7 @@ class Completion(InstalledTest):
         for tool in TOOLS:
             file = self.share / f"zsh/site-functions/_{tool}"
             run("zsh", "-f", "-n", file)
-        self.assertIn("vpl-place --method ", self.zsh("vpl-place --meth"))
+        self.assertIn("vpl-place --method", self.zsh("vpl-place --meth"))
         choices = self.zsh("vpl-place --method ")
         self.assertRegex(choices, r"camera\s+light")
         self.assertIn("vpl-inspect compare", self.zsh("vpl-inspect comp"))

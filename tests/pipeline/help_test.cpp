@@ -109,7 +109,8 @@ TEST_F(Help, MethodsAreListedWithOptionsAndNeeds) {
     }
   }
   const auto needsOf = [&](const std::string& name, const std::string& method) {
-    for (const HelpJson& slot : describedBy(name).at("slots")) {
+    const HelpJson described = describedBy(name);
+    for (const HelpJson& slot : described.at("slots")) {
       for (const HelpJson& m : slot.at("methods"))
         if (m.at("name") == method) return m.at("needs");
     }

@@ -12,7 +12,7 @@ namespace bnvpl {
 struct NormalCone {
   Vec3 axis;
   float cosHalfAngle = 1.0f;
-  float sinHalfAngle() const {  // of at most a right angle
+  float sinHalfAngle() const {  // the half angle is at most 90 degrees
     return cosHalfAngle <= 0.0f ? 1.0f
                                 : std::sqrt(std::max(0.0f, 1.0f - cosHalfAngle * cosHalfAngle));
   }
