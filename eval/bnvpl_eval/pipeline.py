@@ -91,7 +91,7 @@ def options_of(c: Configuration) -> dict[str, str]:
 
 def methods_of(runner: Runner, tool: str, slot: str) -> list[str]:
     """The methods that a tool lists for one of its options."""
-    command = [runner.bin / tool, "--methods", "--json"]
+    command = [str(runner.bin / tool), "--methods", "--json"]
     spec = json.loads(subprocess.run(command, capture_output=True, check=True).stdout)
     return [m["name"] for s in spec["slots"] if s["name"] == slot for m in s["methods"]]
 

@@ -7,6 +7,7 @@ for all. Combinations that vpl-render refuses are listed with its reason.
 
 import math
 import re
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -71,18 +72,26 @@ class Field:
             key=lambda r: (scenes.index(r["scene"]), r["at"], r["compensate"], r["vpls"]),
         )
 
-    def judge(self, view: View, gather: str, compensate: str, vpls: int, spp: int, at: str) -> Any:
-        """Adds a row, or a refusal, and returns the row or None."""
-        c = self.configuration(view, gather, compensate, vpls).but(spp=spp)
-        seeds = range(1, 1 + self.size["seeds"])
-        labels = {"scene": view.scene.title, "gather": gather, "compensate": compensate, "at": at}
+    def unless_refused(self, gather: str, compensate: str, run: Callable[[], Any]) -> Any:
+        """What run() returns; None, with the reason kept, if vpl-render refuses the combination."""
         try:
-            row = self.context.judge("field", view, c, seeds, **labels)
+            return run()
         except ToolFailed as failed:
             if failed.exit_code != REFUSED:
                 raise
             reason = failed.message.partition(": ")[2]
             self.refused.setdefault(f"{gather} with {compensate}", reason)
+            return None
+
+    def judge(self, view: View, gather: str, compensate: str, vpls: int, spp: int, at: str) -> Any:
+        """Adds a row and returns it; None for a refusal."""
+        c = self.configuration(view, gather, compensate, vpls).but(spp=spp)
+        seeds = range(1, 1 + self.size["seeds"])
+        labels = {"scene": view.scene.title, "gather": gather, "compensate": compensate, "at": at}
+        row = self.unless_refused(
+            gather, compensate, lambda: self.context.judge("field", view, c, seeds, **labels)
+        )
+        if row is None:
             return None
         row |= measures.compare_all(self.context, view, row["images"])
         row["shadow_rays"] = pipeline.shadow_rays(self.context.runner, view, c, seeds[0])
@@ -105,16 +114,12 @@ class Field:
 
     def at_equal_time(self, view: View, gather: str, compensate: str) -> dict[str, Any] | None:
         c = self.configuration(view, gather, compensate, self.size["equal_time_vpls"])
-        try:
-            _, runs = pipeline.image(self.context.runner, view, c, 1)
-        except ToolFailed as failed:
-            if failed.exit_code != REFUSED:
-                raise
-            self.refused.setdefault(
-                f"{gather} with {compensate}", failed.message.partition(": ")[2]
-            )
+        made = self.unless_refused(
+            gather, compensate, lambda: pipeline.image(self.context.runner, view, c, 1)
+        )
+        if made is None:
             return None
-        spp = round(c.spp * self.size["time_s"] / max(runs[-1].cpu_s, 1e-3))
+        spp = round(c.spp * self.size["time_s"] / max(made[1][-1].cpu_s, 1e-3))
         if spp < 1:
             self.skipped.append(f"{gather}, {compensate}, equal time, {view.scene.title}")
             return None

@@ -83,6 +83,21 @@ VplDraw drawFrom(std::span<const uint32_t> cluster, std::span<const double> shar
   return {cluster[k], static_cast<float>(1.0 / cdfShare<double>(cdf, k))};
 }
 
+void ClusterDraws::add(std::span<const uint32_t> cluster, std::span<const double> shares,
+                       Rng& rng) {
+  for (auto& draws : draws_) draws.push_back(drawFrom(cluster, shares, rng));
+}
+
+Gathered ClusterDraws::gather(const GatherInputs& in, const TileReceivers& tile, size_t i) const {
+  Gathered out;
+  const size_t sample = tile.firstSample + i / tile.pixels;
+  const auto& draws = draws_[(tile.sequenceOffset + sample) % kTurns];
+  const ShadowTest test(in.rays, in.vpls, *tile.bsdf[i], tile.groupsOf(i));
+  for (const VplDraw& d : draws) test.add(d.index, d.weight, out);
+  out.cut = static_cast<uint32_t>(draws.size());
+  return out;
+}
+
 std::vector<Cluster> clustersBySampling(const Cluster& vpls, const Columns& columns, size_t count,
                                         Rng& rng) {
   const Bundle all = bundleOf(vpls, columns);

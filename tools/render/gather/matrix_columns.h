@@ -5,6 +5,7 @@
 // cluster of columns is cheap to replace by one of them if all have one direction.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <iterator>
 #include <map>
@@ -71,14 +72,27 @@ Bundle bundleOf(std::span<const uint32_t> cluster, const Columns& columns);
 // Draws a VPL of the cluster in proportion to its share. The weight is one over its probability.
 VplDraw drawFrom(std::span<const uint32_t> cluster, std::span<const double> shares, Rng& rng);
 
+// One VPL of each cluster, several times: the samples of a pixel take turns.
+class ClusterDraws {
+ public:
+  // Draws from a further cluster.
+  void add(std::span<const uint32_t> cluster, std::span<const double> shares, Rng& rng);
+  // Light of the VPLs of one turn at receiver i of the tile.
+  Gathered gather(const GatherInputs& in, const TileReceivers& tile, size_t i) const;
+
+ private:
+  static constexpr size_t kTurns = 16;
+  std::array<std::vector<VplDraw>, kTurns> draws_;
+};
+
 // Clustering by sampling: centres are drawn in proportion to what a column adds to the cost of a
 // single cluster of all; each VPL joins the nearest centre. A centre that is drawn again gives no
 // further cluster.
 std::vector<Cluster> clustersBySampling(const Cluster& vpls, const Columns& columns, size_t count,
                                         Rng& rng);
 
-// Splits the cluster of largest cost, the largest of those that cost alike, until there are `count`.
-// split(cluster) returns one part and leaves the other. `free`: also splits clusters of no cost.
+// Splits the cluster of largest cost, the largest of those that cost alike, until there are
+// `count`. split(cluster) returns one part and leaves the other. `free`: also splits clusters of no cost.
 template <typename Split>
 std::vector<Cluster> refinedClusters(std::vector<Cluster> clusters, size_t count,
                                      const Columns& columns, bool free, const Split& split) {

@@ -121,17 +121,17 @@ void sumGroups(const VplLights& vpls, LightTree& tree) {
   }
 }
 
-// Repeatedly splits the cluster with the largest intensity times size, until there are
-// kMaxStartCut.
-std::vector<uint32_t> startCutOf(const LightTree& tree) {
+}  // namespace
+
+std::vector<uint32_t> LightTree::coarseCut(size_t count) const {
   const auto weight = [&](uint32_t i) {
-    const LightNode& n = tree.nodes[i];
+    const LightNode& n = nodes[i];
     return n.leaf() ? 0.0f : mean(n.intensity) * n.bounds.diagonal();
   };
   std::priority_queue<std::pair<float, uint32_t>> open;
   open.emplace(weight(0), 0u);
-  while (open.size() < kMaxStartCut && !tree.nodes[open.top().second].leaf()) {
-    const LightNode& n = tree.nodes[open.top().second];
+  while (open.size() < count && !nodes[open.top().second].leaf()) {
+    const LightNode& n = nodes[open.top().second];
     open.pop();
     open.emplace(weight(n.left), n.left);
     open.emplace(weight(n.right), n.right);
@@ -140,8 +140,6 @@ std::vector<uint32_t> startCutOf(const LightTree& tree) {
   for (; !open.empty(); open.pop()) cut.push_back(open.top().second);
   return cut;
 }
-
-}  // namespace
 
 VplDraw LightTree::draw(const LightNode& n, float u) const {
   if (n.leaf()) return {n.representative, 1.0f};
@@ -166,7 +164,7 @@ LightTree buildLightTree(const VplLights& vpls, uint64_t seed, LightSplit by) {
   for (const uint32_t i : tree.order) {
     tree.upTo.push_back(tree.upTo.back() + double{mean(vpls.intensity[i])});
   }
-  tree.startCut = startCutOf(tree);
+  tree.startCut = tree.coarseCut(kMaxStartCut);
   return tree;
 }
 

@@ -62,6 +62,9 @@ struct LightTree {
       sink.add(g, transfer * groupIntensity[size_t{node} * groups + g]);
   }
 
+  // Splits the cluster with the largest intensity times size, until there are `count`. The tree has
+  // VPLs.
+  std::vector<uint32_t> coarseCut(size_t count) const;
   // Draws a VPL of the cluster in proportion to intensity; u in [0, 1).
   VplDraw draw(const LightNode& n, float u) const;
 };

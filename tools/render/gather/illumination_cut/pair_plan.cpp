@@ -82,24 +82,6 @@ class PairPlanner {
     return nodes;
   }
 
-  std::vector<uint32_t> imageClusters() const {
-    const auto weight = [&](uint32_t i) {
-      const LightNode& n = in_.tree.nodes[i];
-      return n.leaf() ? 0.0f : mean(n.intensity) * n.bounds.diagonal();
-    };
-    std::priority_queue<std::pair<float, uint32_t>> open;
-    open.emplace(weight(0), 0u);
-    while (open.size() < kImageClusters && open.top().first > 0.0f) {
-      const LightNode& n = in_.tree.nodes[open.top().second];
-      open.pop();
-      open.emplace(weight(n.left), n.left);
-      open.emplace(weight(n.right), n.right);
-    }
-    std::vector<uint32_t> cut;
-    for (; !open.empty(); open.pop()) cut.push_back(open.top().second);
-    return cut;
-  }
-
   // Light of a receiver from a coarse cut, channels added.
   float estimateAt(const SurfacePoint& point, const std::vector<uint32_t>& cut) const {
     const Bsdf bsdf(scene(), point);
@@ -115,7 +97,7 @@ class PairPlanner {
 
   // Least light of the receivers of each node. Groups of receivers have that of one of them.
   void estimateImage() {
-    const std::vector<uint32_t> cut = imageClusters();
+    const std::vector<uint32_t> cut = in_.tree.coarseCut(kImageClusters);
     const auto& nodes = plan_.tree.nodes;
     least_.assign(nodes.size(), -1.0f);
     std::vector<uint32_t> groups, below{0};

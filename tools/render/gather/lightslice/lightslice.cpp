@@ -2,7 +2,6 @@
 // many-light matrix is evaluated for each. The VPLs are clustered once by all rows; then each slice
 // refines the clusters by the rows of the slices around it.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <memory>
 #include <numeric>
@@ -11,7 +10,6 @@
 #include "core/parallel.h"
 #include "tools/common/files/streams.h"
 #include "tools/render/gather/matrix_columns.h"
-#include "tools/render/gather/shadow_test.h"
 
 namespace bnvpl::methods::gather::lightslice {
 
@@ -25,7 +23,6 @@ constexpr auto kNeighbourSlicesOption =
     countOption("neighbour-slices", "8", 1024, "", "rows that refine a slice's clusters");
 constexpr auto kOptions = optionTable(kSlicesOption, kColumnsOption, kNeighbourSlicesOption);
 constexpr double kCommonShare = 0.3;  // clusters found for all slices, over those of a slice
-constexpr size_t kDraws = 16;         // draws from each cluster; samples of a pixel take turns
 
 using Vector = std::valarray<double>;
 
@@ -106,7 +103,7 @@ Columns rowsAbout(const Placed& slice, const std::vector<Placed>& slices, size_t
 struct Plan {
   float scale = 1.0f;  // scale of normals
   std::vector<Placed> slices;
-  std::vector<std::array<std::vector<VplDraw>, kDraws>> draws;
+  std::vector<ClusterDraws> draws;
 };
 
 Plan planOf(const GatherInputs& in, const Values& options) {
@@ -140,28 +137,21 @@ Plan planOf(const GatherInputs& in, const Values& options) {
         rowsAbout(plan.slices[s], plan.slices, options[kNeighbourSlicesOption], columns);
     const std::vector<Cluster> clusters = refinedClusters(
         common, count, local, false, [&](Cluster& c) { return splitOff(c, local); });
-    for (const Cluster& cluster : clusters) {
-      for (auto& draws : plan.draws[s]) draws.push_back(drawFrom(cluster, columns.norms(), own));
-    }
+    for (const Cluster& cluster : clusters) plan.draws[s].add(cluster, columns.norms(), own);
   });
   return plan;
 }
 
 Gather make(const GatherInputs& in, const Values& options) {
   const auto plan = std::make_shared<const Plan>(planOf(in, options));
-  return {[&rays = in.rays, &vpls = in.vpls, plan](const TileReceivers& tile,
-                                                   std::span<Gathered> out) {
+  return {[in, plan](const TileReceivers& tile, std::span<Gathered> out) {
     for (size_t i = 0; i < out.size(); ++i) {
       out[i] = {};
       if (!tile.bsdf[i] || plan->draws.empty()) continue;
       const Vector at = placeOf(tile.bsdf[i]->point(), plan->scale);
       const auto apart = [&](const Placed& s) { return ((s.at - at) * (s.at - at)).sum(); };
       const auto slice = std::ranges::min_element(plan->slices, {}, apart) - plan->slices.begin();
-      const size_t sample = tile.firstSample + i / tile.pixels;
-      const auto& draws = plan->draws[slice][(tile.sequenceOffset + sample) % kDraws];
-      const ShadowTest test(rays, vpls, *tile.bsdf[i], tile.groupsOf(i));
-      for (const VplDraw& d : draws) test.add(d.index, d.weight, out[i]);
-      out[i].cut = static_cast<uint32_t>(draws.size());
+      out[i] = plan->draws[slice].gather(in, tile, i);
     }
   }};
 }

@@ -2,16 +2,13 @@
 // evaluated; their columns say which VPLs light the film alike. One VPL of each cluster then lights
 // every receiver.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <memory>
 #include <numbers>
 #include <numeric>
 
-#include "core/parallel.h"
 #include "tools/common/files/streams.h"
 #include "tools/render/gather/matrix_columns.h"
-#include "tools/render/gather/shadow_test.h"
 
 namespace bnvpl::methods::gather::mrcs {
 
@@ -23,9 +20,8 @@ constexpr auto kColumnsOption =
     countOption("columns", "900", 0x1p20, "", "clusters of VPLs for the whole film");
 constexpr auto kOptions = optionTable(kRowsOption, kColumnsOption);
 constexpr double kSampledShare = 2.0 / 3.0;  // clusters found by sampling; the rest by splitting
-constexpr size_t kDraws = 16;  // draws from each cluster; samples of a pixel take turns
 
-// One random point of the film in each of about `rows` cells of equal size, where one has a surface.
+// One random point of the film in each of about `rows` cells of equal size that see a surface.
 std::vector<SurfacePoint> rowPoints(const PrimaryPoints& film, uint64_t rows, Rng& rng) {
   const double pixels = double(film.width) * double(film.height);
   const double side = std::max(1.0, std::sqrt(pixels / double(rows)));
@@ -85,16 +81,12 @@ Cluster splitOff(Cluster& cluster, const Columns& columns, Rng& rng) {
   return part;
 }
 
-// One VPL for each cluster.
-struct Plan {
-  std::array<std::vector<VplDraw>, kDraws> draws;
-};
-
 // Clusters of the VPLs that some row sees, and one of all others, whose VPLs are drawn by their
 // flux: without it the mean of many images would lack their light.
 std::vector<Cluster> clustersOf(const Columns& columns, size_t count, Rng& rng) {
   Cluster seen, unseen;
-  for (uint32_t i = 0; i < columns.size(); ++i) (columns.norm(i) > 0.0 ? seen : unseen).push_back(i);
+  for (uint32_t i = 0; i < columns.size(); ++i)
+    (columns.norm(i) > 0.0 ? seen : unseen).push_back(i);
   std::vector<Cluster> clusters;
   if (!seen.empty()) {
     const auto bySampling = static_cast<size_t>(std::ceil(kSampledShare * double(count)));
@@ -105,9 +97,9 @@ std::vector<Cluster> clustersOf(const Columns& columns, size_t count, Rng& rng) 
                          [&](Cluster& c) { return splitOff(c, columns, rng); });
 }
 
-Plan planOf(const GatherInputs& in, const Values& options) {
-  Plan plan;
-  if (in.vpls.size() == 0) return plan;
+ClusterDraws drawsOf(const GatherInputs& in, const Values& options) {
+  ClusterDraws draws;
+  if (in.vpls.size() == 0) return draws;
   Rng rng(streamKey(in.seed, Stream::LightTree) + 2, 0);
   const std::vector<SurfacePoint> rows = rowPoints(in.primaryPoints(), options[kRowsOption], rng);
   const Columns columns = columnsAt(in, rows, "rows");
@@ -116,25 +108,16 @@ Plan planOf(const GatherInputs& in, const Values& options) {
     const double flux = double{mean(in.vpls.intensity[i])};
     shares[i] = columns.norm(i) > 0.0 ? columns.norm(i) : flux;
   }
-  for (const Cluster& c : clustersOf(columns, options[kColumnsOption], rng)) {
-    for (auto& draws : plan.draws) draws.push_back(drawFrom(c, shares, rng));
-  }
-  return plan;
+  for (const Cluster& c : clustersOf(columns, options[kColumnsOption], rng))
+    draws.add(c, shares, rng);
+  return draws;
 }
 
 Gather make(const GatherInputs& in, const Values& options) {
-  const auto plan = std::make_shared<const Plan>(planOf(in, options));
-  return {[&rays = in.rays, &vpls = in.vpls, plan](const TileReceivers& tile,
-                                                   std::span<Gathered> out) {
-    for (size_t i = 0; i < out.size(); ++i) {
-      out[i] = {};
-      if (!tile.bsdf[i]) continue;
-      const size_t sample = tile.firstSample + i / tile.pixels;
-      const auto& draws = plan->draws[(tile.sequenceOffset + sample) % kDraws];
-      const ShadowTest test(rays, vpls, *tile.bsdf[i], tile.groupsOf(i));
-      for (const VplDraw& d : draws) test.add(d.index, d.weight, out[i]);
-      out[i].cut = static_cast<uint32_t>(draws.size());
-    }
+  const auto draws = std::make_shared<const ClusterDraws>(drawsOf(in, options));
+  return {[in, draws](const TileReceivers& tile, std::span<Gathered> out) {
+    for (size_t i = 0; i < out.size(); ++i)
+      out[i] = tile.bsdf[i] ? draws->gather(in, tile, i) : Gathered{};
   }};
 }
 
