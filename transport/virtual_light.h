@@ -32,8 +32,8 @@ struct VplLights {
   size_t size() const { return position.size(); }
 };
 
-// `clamp` is in units of each VPL's radius (r_max), or of `oneRadius` if that is not 0. `groups`: the
-// table's flux by light group.
+// `clamp` is in units of each VPL's radius (r_max), or of `oneRadius` if that is not 0. `groups`:
+// the table's flux by light group.
 VplLights makeVplLights(const VplTable& lit, const RayScene& rays, float clamp, LightKind kind = {},
                         const VplGroups& groups = {}, float oneRadius = 0.0f);
 

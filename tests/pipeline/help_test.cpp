@@ -87,8 +87,9 @@ TEST_F(Help, JsonTellsKindDefaultRangeAndNeeds) {
     EXPECT_EQ(option(slot.at("name")).at("choices").size(), slot.at("methods").size());
   EXPECT_EQ(option("only").at("choices"), HelpJson({"all", "direct", "indirect"}));
   EXPECT_EQ(option("allocate").at("choices"), HelpJson({"on", "off"}));
-  EXPECT_EQ(option("error").at("methods").at("gather"),
-            HelpJson({"illumination-cut", "lightcuts", "multidimensional", "paquette", "tilecuts"}));
+  EXPECT_EQ(
+      option("error").at("methods").at("gather"),
+      HelpJson({"illumination-cut", "lightcuts", "multidimensional", "paquette", "tilecuts"}));
   EXPECT_EQ(option("quiet").at("kind"), "flag");
   EXPECT_EQ(option("json").at("needs"), "--estimate");
   EXPECT_EQ(option("view").at("excludes"), "--camera");

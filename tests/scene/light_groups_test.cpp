@@ -28,8 +28,8 @@ TEST_F(LightGroups, EveryKindOfLightCanHaveOne) {
       "[[light]]\ntype = \"material\"\nmaterial = \"paint\"\n" + group("lamps") + point("") +
       "[[light]]\ntype = \"disk\"\nradius = 1\nposition = [0, 9, 0]\ndirection = [0, 1, 0]\n" +
       "power = [1, 1, 1]\n" + group("Key_1") +
-      "[[light]]\ntype = \"sun\"\ndirection = [0, -1, 0]\nirradiance = [1, 1, 1]\n" +
-      group("sky") + "[[light]]\ntype = \"environment\"\nradiance = [1, 1, 1]\n" + group("sky"));
+      "[[light]]\ntype = \"sun\"\ndirection = [0, -1, 0]\nirradiance = [1, 1, 1]\n" + group("sky") +
+      "[[light]]\ntype = \"environment\"\nradiance = [1, 1, 1]\n" + group("sky"));
   EXPECT_EQ(s.lightGroups, (std::vector<std::string>{"default", "Key_1", "lamps", "sky"}));
   const RayScene rays(s);
   const LightSet lights(rays);
@@ -64,8 +64,7 @@ TEST_F(LightGroups, WrongNamesAreRefused) {
                 .find("more than 31 light groups"),
             std::string::npos);
   const std::string sides =
-      loadError("[[light]]\ntype = \"material\"\nmaterial = \"paint\"\nsides = 2\n" +
-                group("key"));
+      loadError("[[light]]\ntype = \"material\"\nmaterial = \"paint\"\nsides = 2\n" + group("key"));
   EXPECT_NE(sides.find("'sides' needs 'radiance'"), std::string::npos) << sides;
 }
 

@@ -166,7 +166,8 @@ inline void expectSumOverAll(const std::string& gather, const Given& options,
   }
 }
 
-// Mean squared difference of G from the sum over all VPLs at the same points, over its squared mean.
+// Mean squared difference of G from the sum over all VPLs at the same points, over its squared
+// mean.
 inline double relativeMseToAll(const GatherCase& c, const std::string& gather,
                                const Given& options) {
   const Image all = c.indirect("all"), image = c.indirect(gather, options);

@@ -88,7 +88,7 @@ struct GatherMethod {
   // Smooths the gathered light over the film; null or an empty filter: it stays as it is.
   FilmFilter (*filmFilter)(const Values&) = nullptr;
   bool lightGroups = true;  // fills TileReceivers::groupSums
-  bool pixelSum = false;  // treats all samples of a pixel as one, with their weights
+  bool pixelSum = false;    // treats all samples of a pixel as one, with their weights
 };
 // Defined in the build folder by cmake/Methods.cmake, from the folders beside this file.
 std::span<const GatherMethod* const> gatherMethods();

@@ -92,7 +92,8 @@ std::vector<Cluster> clustersBySampling(const Cluster& vpls, const Columns& colu
                                         Rng& rng);
 
 // Splits the cluster of largest cost, the largest of those that cost alike, until there are
-// `count`. split(cluster) returns one part and leaves the other. `free`: also splits clusters of no cost.
+// `count`. split(cluster) returns one part and leaves the other. `free`: also splits clusters of no
+// cost.
 template <typename Split>
 std::vector<Cluster> refinedClusters(std::vector<Cluster> clusters, size_t count,
                                      const Columns& columns, bool free, const Split& split) {

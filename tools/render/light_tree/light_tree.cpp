@@ -58,8 +58,8 @@ class Builder {
   size_t split(size_t begin, size_t end) {
     const std::span<uint32_t> elements = std::span(order_).subspan(begin, end - begin);
     if (by_ == LightSplit::Middle) {
-      return begin + splitNode(elements,
-                               [&](uint32_t i, size_t axis) { return coordinate(i, axis); });
+      return begin +
+             splitNode(elements, [&](uint32_t i, size_t axis) { return coordinate(i, axis); });
     }
     const size_t first = splitByOrientation(vpls_, elements);
     return begin + (first > 0 && first < elements.size() ? first : elements.size() / 2);

@@ -66,7 +66,8 @@ class Hierarchy {
 };
 
 Gather make(const GatherInputs& in, const Values& options) {
-  if (in.vpls.size() == 0) return gatherEach([](const Bsdf&, const GroupSink&) { return Gathered{}; });
+  if (in.vpls.size() == 0)
+    return gatherEach([](const Bsdf&, const GroupSink&) { return Gathered{}; });
   const auto levels = std::make_shared<const Hierarchy>(in, options.real32(kAlphaOption));
   return gatherEach([levels](const Bsdf& bsdf, uint64_t key, const GroupSink&) {
     return levels->gather(bsdf, key);
@@ -76,8 +77,12 @@ Gather make(const GatherInputs& in, const Values& options) {
 }  // namespace
 
 extern const GatherMethod method;
-const GatherMethod method{"grid-hierarchy",
-                          "near VPLs alone, farther ones by lights of ever coarser grids", kOptions,
-                          make, kCounters, nullptr, false};
+const GatherMethod method{
+    .name = "grid-hierarchy",
+    .summary = "near VPLs alone, farther ones by lights of ever coarser grids",
+    .options = kOptions,
+    .make = make,
+    .counters = kCounters,
+    .lightGroups = false};
 
 }  // namespace bnvpl::methods::gather::grid_hierarchy

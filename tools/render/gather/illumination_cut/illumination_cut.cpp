@@ -56,8 +56,12 @@ Gather make(const GatherInputs& in, const Values& options) {
 }  // namespace
 
 extern const GatherMethod method;
-const GatherMethod method{"illumination-cut",
-                          "pairs of clusters, of the film's points and of VPLs, refined together",
-                          kOptions, make, kCounters, nullptr, false};
+const GatherMethod method{
+    .name = "illumination-cut",
+    .summary = "pairs of clusters, of the film's points and of VPLs, refined together",
+    .options = kOptions,
+    .make = make,
+    .counters = kCounters,
+    .lightGroups = false};
 
 }  // namespace bnvpl::methods::gather::illumination_cut

@@ -99,8 +99,12 @@ Gather make(const GatherInputs& in, const Values& options) {
 }  // namespace
 
 extern const GatherMethod method;
-const GatherMethod method{"interleaved",
-                          "a subset of the VPLs for each pixel of a pattern, averaged by a filter",
-                          kOptions, make, {}, filmFilter, false};
+const GatherMethod method{
+    .name = "interleaved",
+    .summary = "a subset of the VPLs for each pixel of a pattern, averaged by a filter",
+    .options = kOptions,
+    .make = make,
+    .filmFilter = filmFilter,
+    .lightGroups = false};
 
 }  // namespace bnvpl::methods::gather::interleaved

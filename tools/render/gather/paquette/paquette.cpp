@@ -161,8 +161,12 @@ Gather make(const GatherInputs& in, const Values& options) {
 }  // namespace
 
 extern const GatherMethod method;
-const GatherMethod method{"paquette",
-                          "nodes of an octree, opened where the light of their VPLs may differ",
-                          kOptions, make, kCounters, nullptr, false};
+const GatherMethod method{
+    .name = "paquette",
+    .summary = "nodes of an octree, opened where the light of their VPLs may differ",
+    .options = kOptions,
+    .make = make,
+    .counters = kCounters,
+    .lightGroups = false};
 
 }  // namespace bnvpl::methods::gather::paquette

@@ -20,8 +20,8 @@ constexpr auto kLightOption =
 constexpr auto kClampOption = neededBy(
     kIndirectIsShown,
     inTopic(Topic::Expert, realOption("clamp", "2", 0, 1000, "r_max",
-                                       "radius of a VPL: 1/d^2 of a point is clamped within "
-                                       "it; a disk has this radius")));
+                                      "radius of a VPL: 1/d^2 of a point is clamped within "
+                                      "it; a disk has this radius")));
 constexpr auto kNearFieldRaysOption =
     neededBy({Condition{"only", "all|indirect"}, Condition{"direct-samples", "1"}},
              wholeOption("near-field-rays", "8", 1, 4096, "",
