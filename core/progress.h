@@ -4,10 +4,17 @@
 #include <concepts>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string_view>
 #include <utility>
 
 namespace bnvpl {
+
+// What a work knows of itself that its units do not tell.
+struct ProgressNote {
+  std::optional<double> leftS = {};  // seconds until it ends
+  std::optional<double> error = {};  // relative error of the result so far
+};
 
 // Called from any thread with the units of work done since the last call. It may be empty.
 class ProgressFn {
@@ -15,15 +22,23 @@ class ProgressFn {
   using Count = std::function<void(uint64_t)>;
   using Begin = std::function<void(std::string_view what, uint64_t total)>;
   using End = std::function<void()>;
+  using Tell = std::function<void(const ProgressNote&)>;
 
   ProgressFn() = default;
   template <typename Fn>
   requires(std::constructible_from<Count, Fn> && !std::same_as<std::remove_cvref_t<Fn>, ProgressFn>)
-      ProgressFn(Fn count, Begin begin = {}, End end = {})  // NOLINT: any callable is one
-      : count_(std::move(count)), begin_(std::move(begin)), end_(std::move(end)) {}
+      ProgressFn(Fn count, Begin begin = {}, End end = {},
+                 Tell tell = {})  // NOLINT: any callable is one
+      : count_(std::move(count)),
+        begin_(std::move(begin)),
+        end_(std::move(end)),
+        tell_(std::move(tell)) {}
 
   explicit operator bool() const { return static_cast<bool>(count_); }
   void operator()(uint64_t done) const { count_(done); }
+  void tell(const ProgressNote& note) const {
+    if (tell_) tell_(note);
+  }
 
   // Work that is counted separately, such as preparations. It ends with the lifetime of this
   // object. Only one may exist at a time.
@@ -50,6 +65,7 @@ class ProgressFn {
   Count count_;
   Begin begin_;
   End end_;
+  Tell tell_;
 };
 
 }  // namespace bnvpl

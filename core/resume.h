@@ -42,13 +42,14 @@ inline std::vector<uint8_t> unitsToDo(size_t count, const Shard& shard) {
 
 // Calls unit(i) for each i with done[i] == 0, and sets done[i] to 1. When resume.pause() returns
 // true, the running units end, and resume.save(state()) is called unless no unit is left. The
-// result must not depend on which units ran together.
-template <typename Unit, typename State>
+// result must not depend on which units ran together, nor on their order: the k-th is order(k).
+template <typename Unit, typename State, typename Order = std::identity>
 void forUnitsLeft(std::vector<uint8_t>& done, const Resume& resume, const Unit& unit,
-                  const State& state) {
+                  const State& state, const Order& order = {}) {
   for (;;) {
     std::atomic<bool> paused{false};
-    parallelFor(done.size(), 1, [&](size_t i) {
+    parallelFor(done.size(), 1, [&](size_t k) {
+      const size_t i = order(k);
       if (done[i] || paused.load(std::memory_order_relaxed)) return;
       {
         const CostProbe::Unit timed(resume.probe, resume.times);

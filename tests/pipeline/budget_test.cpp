@@ -69,6 +69,21 @@ TEST_F(BudgetRun, ATimeIsKeptAndItsImageRepeated) {
   }
 }
 
+// A pass of four samples a pixel takes longer than all of the time, so that passes have one.
+TEST_F(BudgetRun, ALargeFilmHasPassesThatFitIntoTheTime) {
+  const std::string film =
+      scene_ + " --integrator path --size 1600x1200 --stats " + path("s.json") + " -o ";
+  succeed("vpl-render", film + path("a.exr") + " --time 3s");
+  EXPECT_LT(stats()["time_s"].get<double>(), 6.0);
+  EXPECT_GE(stats()["passes"].get<int>(), 2);
+  const uint64_t passes = stats()["passes"], samples = stats()["samples"];
+  const uint64_t spp = samples / passes / (1600 * 1200);
+  EXPECT_LE(spp, 2u);
+  succeed("vpl-render", film + path("b.exr") + " --passes " + passesDone() + " --pass-spp " +
+                            std::to_string(spp));
+  EXPECT_TRUE(readAll(at("a.exr")) == readAll(at("b.exr")));
+}
+
 TEST_F(BudgetRun, AnErrorIsReached) {
   succeed("vpl-render",
           paths("--target-error 0.1 -o " + path("a.exr") + " --stats " + path("s.json")));

@@ -27,11 +27,14 @@ TEST(Durations, SecondsMinutesAndHours) {
 }
 
 TEST(Progress, Line) {
-  EXPECT_EQ(progressText("samples", 12000000, 40000000, 53.6, 125),
+  EXPECT_EQ(progressText("samples", 12000000, 40000000, 53.6, {.leftS = 125}),
             "samples 12M of 40M (30 %), 2 min 05 s left");
   EXPECT_EQ(progressText("samples", 12000000, 0, 34, {}), "samples 12M in 34 s");
+  EXPECT_EQ(progressText("samples", 12000000, 0, 34, {.leftS = 26, .error = 0.0314}),
+            "samples 12M in 34 s, 26 s left, error 0.031");
   EXPECT_EQ(progressText("photons", 1, 4, 2000, {}), "photons 1 of 4 (25 %)");
-  EXPECT_EQ(progressText("photons", 999, 1000, 10, 0.2), "photons 999 of 1k (99 %), 0 s left");
+  EXPECT_EQ(progressText("photons", 999, 1000, 10, {.leftS = 0.2}),
+            "photons 999 of 1k (99 %), 0 s left");
 }
 
 TEST(TimeLeft, OfASteadyWorkIsExact) {

@@ -6,6 +6,7 @@
 
 #include "tests/support/pipeline.h"
 #include "tests/support/z_test.h"
+#include "tools/render/film/partial_film.h"
 #include "tools/render/stage_options.h"
 
 namespace bnvpl::test {
@@ -49,6 +50,32 @@ double meanSquare(const std::vector<float>& values, double about) {
   double sum = 0.0;
   for (const float v : values) sum += (double{v} - about) * (double{v} - about);
   return sum / double(values.size());
+}
+
+// A first picture has the tiles that are there; each other has the mean of a nearest one.
+TEST(PartialFilm, FillsGapsFromTheNearestTiles) {
+  PartialFilm film({32, 8});  // four tiles in a row
+  std::vector<Vec3> left(64, Vec3{1.0f}), right(64, Vec3{5.0f});
+  left[0] = Vec3{65.0f};  // mean 2
+  film.add(0, left), film.add(3, right);
+  const Image image = film.image();
+  const std::vector<float>& red = *image.find("R");
+  EXPECT_EQ((std::array{red[0], red[1], red[8], red[16], red[24]}),
+            (std::array{65.0f, 1.0f, 2.0f, 5.0f, 5.0f}));
+}
+
+TEST(SpreadOrder, HasEveryTileOnceAndSpreadsTheFirst) {
+  for (size_t n = 1; n <= 300; ++n) {
+    const SpreadOrder order(n);
+    std::vector<int> times(n);
+    for (size_t i = 0; i < n; ++i) ++times[order(i)];
+    ASSERT_EQ(std::ranges::count(times, 1), std::ptrdiff_t(n)) << n;
+  }
+  const SpreadOrder order(1000);
+  std::vector<size_t> first;
+  for (size_t i = 0; i < 20; ++i) first.push_back(order(i));
+  std::ranges::sort(first);
+  for (size_t i = 1; i < first.size(); ++i) EXPECT_LT(first[i] - first[i - 1], 120u);
 }
 
 // Samples of a tile share a number, as they share a cut: twelve passes of four such samples are far
@@ -244,8 +271,8 @@ TEST(Passes, EndByTimeErrorOrNumber) {
 TEST(Passes, SppLimitsTheirNumber) {
   EXPECT_FALSE(budgetOf(resolveRender({})).has_value());
   EXPECT_EQ(resolveRender({})[kSppOption], 16u);
-  EXPECT_EQ(budgetOf(resolveRender({{"time", "1m"}}))->passes, 0xffffffffu / kPassSpp);
-  EXPECT_EQ(budgetOf(resolveRender({{"time", "1m"}, {"spp", "33"}}))->passes, 32u / kPassSpp);
+  EXPECT_EQ(budgetOf(resolveRender({{"time", "1m"}}))->spp, 0xffffffffu);
+  EXPECT_EQ(budgetOf(resolveRender({{"time", "1m"}, {"spp", "33"}}))->spp, 33u);
   EXPECT_EQ(budgetOf(resolveRender({{"spp", "33"}, {"passes", "3"}}))->passes, 3u);
   EXPECT_EQ(budgetOf(resolveRender({{"time", "1.5m"}}))->timeS, 90.0);
   EXPECT_THROW(resolveRender({{"time", "1m"}, {"spp", "7"}}), UsageError);

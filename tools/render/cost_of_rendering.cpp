@@ -22,10 +22,11 @@ Given withoutPasses(const Given& given, const Values& options) {
   Given plain;
   for (const auto& [name, text] : given) {
     if (name != "passes" && name != "time" && name != "target-error" && name != "adaptive" &&
-        name != "spp" && name != "layers")
+        name != "pass-spp" && name != "spp" && name != "layers")
       plain.emplace_back(name, text);
   }
-  plain.emplace_back("spp", std::to_string(budget->passes * kPassSpp));
+  plain.emplace_back("spp",
+                     std::to_string(std::min(budget->spp, budget->passes * passSppOf(options))));
   return plain;
 }
 

@@ -54,6 +54,8 @@ void requireConsistent(const Values& options, const Given& given, const RenderFi
   }
   if (inShards && !files.png.empty())
     throw UsageError("--png is of a whole image; leave it out and give it to vpl-merge");
+  if (inShards && !files.viewer.empty())
+    throw UsageError("--preview is of a whole image; leave it or --shard out");
   const bool exposure =
       std::ranges::any_of(given, [](const auto& g) { return g.first == "exposure"; });
   if (exposure && files.png.empty())

@@ -10,6 +10,7 @@ namespace bnvpl {
 struct RenderFiles {
   fs::path lit;  // empty for integrators that take no VPLs
   fs::path png;  // empty: no preview
+  std::string viewer;  // address of --preview; empty: none
 };
 
 // Checks, before any work, what the command line says together. Throws UsageError.

@@ -7,6 +7,7 @@
 #include "tools/render/cost_of_rendering.h"
 #include "tools/render/inputs.h"
 #include "tools/render/outputs.h"
+#include "tools/render/preview_outputs.h"
 
 namespace bnvpl {
 namespace {
@@ -16,6 +17,8 @@ int runRender(const StageRequest& request, const RenderFiles& files, const ToolO
   const Values options = resolveRender(request.given);
   requireConsistent(options, request.given, files, request.shard.has_value());
   run.used.reads("scene", request.scene.file).reads("lit", files.lit);
+  std::optional<ViewerAddress> address;
+  if (!files.viewer.empty() && !run.estimating()) address = parseViewerAddress(files.viewer);
   run.used.writes("-o", request.output, {request.shard ? OutputKind::Shard : OutputKind::Exr});
   run.used.writes("--png", files.png, {OutputKind::Png});
   run.checkFiles();
@@ -44,16 +47,19 @@ int runRender(const StageRequest& request, const RenderFiles& files, const ToolO
     json["view"] = viewRecord(scene);
     return json;
   };
-  const auto result = [&](const StageTask& t, const PreviewFn& preview) {
-    return render(rays, lights, lit, options, t.progress, t.resume, preview);
+  const auto result = [&](const StageTask& t, const FilmPreview& preview) {
+    return render(rays, lights, lit, options, t.progress, t.resume, preview, run.startS());
   };
   const ImagePaths images{request.output, files.png};
   const auto whole = [&](const StageTask& task) {
-    RenderResult all = result(task, previewTo(images, options));
+    std::optional<LiveViewer> viewer;
+    if (address) viewer.emplace(*address, request.output.string(), film.width, film.height);
+    RenderResult all = result(task, previewTo(images, options, viewer ? &*viewer : nullptr));
     const Values made = optionsMade(all, request.given);
     finishImage(all, made, extendProvenance(lit.provenance, record(recordOf(renderSpec(), made))));
     reportRender(all, made, task.summary);
     addImages(task.files, images, all.image, options, task.summary);
+    if (viewer) showFinished(*viewer, *address, all.image, task.summary);
   };
   const auto part = [&](const StageTask& task) -> ShardRun {
     const Json made = record(recordOf(renderSpec(), options));
@@ -79,6 +85,7 @@ int main(int argc, char** argv) {
   addFile(cli, "lit", files.lit, "lit VPLs (.vpl), for integrators that take them");
   addFile(cli, "-o,--output", request.output, "image (.exr)")->required();
   addFile(cli, "--png", files.png, "also write a preview");
+  addPreviewOption(cli, files.viewer);
   addStageRequest(cli, renderSpec(), request, tool, "tiles and photons");
   return runTool(cli, tool, argc, argv, [&] {
     request.command = commandOf(cli);

@@ -108,13 +108,10 @@ void addImages(OutputSet& files, const ImagePaths& paths, const Image& image, co
   summary.add("exposure_ev", ev, line + paths.png.string());
 }
 
-PreviewFn previewTo(const ImagePaths& paths, const Values& options) {
-  if (paths.png.empty()) return {};
-  return [png = paths.png, exposure = options[kExposureOption]](const Image& image) {
-    AtomicFile file(png);
-    writePreview(file, image, exposureOf(image, exposure));
-    file.commit();
-  };
+void writePng(const fs::path& png, const Image& image, const Values& options) {
+  AtomicFile file(png);
+  writePreview(file, image, exposureOf(image, options[kExposureOption]));
+  file.commit();
 }
 
 Json resumableOptions(const Values& options) {
@@ -132,7 +129,9 @@ Values optionsMade(const RenderResult& result, const Given& given) {
   Given all = given;
   if (result.passes) {
     all.emplace_back("passes", std::to_string(result.passes->passes));
-    all.emplace_back("spp", std::to_string(result.passes->passes * kPassSpp));
+    all.emplace_back("spp", std::to_string(result.passes->passes * result.passes->passSpp));
+    if (result.passes->passSpp != kPassSpp)
+      all.emplace_back("pass-spp", std::to_string(result.passes->passSpp));
   }
   return resolveRender(all);
 }
@@ -176,11 +175,13 @@ namespace {
 
 void reportPasses(const PassesDone& passes, const Values& options, Summary& summary) {
   char line[256];
+  const std::string ofSpp =
+      passes.passSpp == kPassSpp ? "" : " --pass-spp " + std::to_string(passes.passSpp);
   std::snprintf(line, sizeof line,
-                "%llu passes of %u spp in %.1f s: estimated relative error %.3g; --passes %llu%s "
+                "%llu passes of %u spp in %.1f s: estimated relative error %.3g; --passes %llu%s%s "
                 "repeats this image",
-                static_cast<unsigned long long>(passes.passes), kPassSpp, passes.timeS,
-                passes.error, static_cast<unsigned long long>(passes.passes),
+                static_cast<unsigned long long>(passes.passes), passes.passSpp, passes.timeS,
+                passes.error, static_cast<unsigned long long>(passes.passes), ofSpp.c_str(),
                 options[kAdaptiveOption] ? "" : " --adaptive off");
   summary.add("passes", passes.passes, line);
   summary.add("relative_error", passes.error);

@@ -49,8 +49,8 @@ std::span<const Option> stageOptions() {
   static const std::string layersHelp =
       "extra channels of the image, or all" + layerList() + counterList();
   static const std::array options = optionTable(
-      kSppOption, kTimeOption, kTargetErrorOption, kPassesOption, kAdaptiveOption, kOnlyOption,
-      kSeedOption, kFilterOption, kFilterRadiusOption,
+      kSppOption, kTimeOption, kTargetErrorOption, kPassesOption, kPassSppOption, kAdaptiveOption,
+      kOnlyOption, kSeedOption, kFilterOption, kFilterRadiusOption,
       inTopic(Topic::Files, unrecorded(textOption(kLayersKey.name, "", "NAME,...", layersHelp))),
       kSizeOption, kTransparentOption, kCropOption, kForDenoiserOption, kPixelsOption,
       kExposureOption);
@@ -177,6 +177,10 @@ Values resolveRender(const Given& given) {
   return options;
 }
 
+uint64_t passSppOf(const Values& options) {
+  return options.has(kPassSppOption) ? options[kPassSppOption] : uint64_t{kPassSpp};
+}
+
 std::optional<Budget> budgetOf(const Values& options) {
   const bool time = options.has(kTimeOption), error = options.has(kTargetErrorOption),
              passes = options.has(kPassesOption);
@@ -184,13 +188,18 @@ std::optional<Budget> budgetOf(const Values& options) {
   Budget budget;
   if (time) budget.timeS = options[kTimeOption];
   if (error) budget.error = options[kTargetErrorOption];
-  budget.passes = options[kSppOption] / kPassSpp;
-  if (budget.passes < kMinPasses) {
+  budget.spp = options[kSppOption];
+  const uint64_t passSpp = passSppOf(options);
+  if (budget.spp < kMinPasses * passSpp) {
     throw UsageError("--spp: with --time, --target-error or --passes it is at least " +
-                     std::to_string(kMinPasses * kPassSpp) + ", for " + std::to_string(kMinPasses) +
-                     " passes of " + std::to_string(kPassSpp));
+                     std::to_string(kMinPasses * passSpp) + ", for " + std::to_string(kMinPasses) +
+                     " passes of " + std::to_string(passSpp));
   }
-  if (passes) budget.passes = std::min(budget.passes, options[kPassesOption]);
+  if (options.has(kPassSppOption) || !time)
+    budget.passSpp = static_cast<uint32_t>(passSpp);
+  else
+    budget.passSpp = 0;
+  if (passes) budget.passes = options[kPassesOption];
   budget.adaptive = options[kAdaptiveOption];
   return budget;
 }
@@ -230,8 +239,8 @@ uint64_t renderWork(const Scene& scene, const Values& options) {
   const auto budget = budgetOf(options);
   uint64_t spp = options[kSppOption];
   if (budget) {
-    if (!options.has(kPassesOption) && spp == static_cast<uint64_t>(kUnlimitedSpp)) return 0;
-    spp = budget->passes * kPassSpp;
+    if (options.has(kPassesOption)) spp = std::min(spp, budget->passes * passSppOf(options));
+    if (spp == static_cast<uint64_t>(kUnlimitedSpp)) return 0;
   }
   FilmOptions film = filmOptionsOf(options);
   film.crop = cropOf(options, scene.film);
@@ -306,7 +315,7 @@ void renderSamples(const RayScene& rays, const Integrator& integrator, const Val
 
 RenderResult render(const RayScene& rays, const LightSet& lights, const VplTable& lit,
                     const Values& options, const ProgressFn& progress, const Resume& resume,
-                    const PreviewFn& preview) {
+                    const FilmPreview& preview, double startS) {
   FilmOptions film = filmOptionsOf(options);
   film.crop = cropOf(options, rays.scene().film);
   film.firstHits = traceFirstHits(rays, film.filter, film.layers, film.seed, options[kSppOption]);
@@ -320,11 +329,13 @@ RenderResult render(const RayScene& rays, const LightSet& lights, const VplTable
   // The reflected half is reflected again: 0.5 / (1 - 0.5) = 1.
   if (const double area = surfaceArea(rays.scene()); area > 0.0)
     result.evenRadiance = double{mean(lights.totalPower())} / (std::numbers::pi * area);
-  if (const auto budget = budgetOf(options)) {
+  if (auto budget = budgetOf(options)) {
+    budget->startS = startS;
     result.image = renderPasses(rays.scene(), integrator, film, *budget, result.stats,
                                 result.passes.emplace(), progress, resume, preview);
   } else {
-    result.image = renderFilm(rays.scene(), integrator, film, result.stats, progress, resume);
+    result.image =
+        renderFilm(rays.scene(), integrator, film, result.stats, progress, resume, preview);
   }
   result.image.camera = imageCameraOf(rays.scene());
   addFirstHitAttributes(rays.scene(), film.layers, result.image.attributes);

@@ -19,6 +19,8 @@ const StageSpec& renderSpec();
 Values resolveRender(const Given& given);
 // Budget of the passes, or none if the image is rendered without passes. Throws UsageError.
 std::optional<Budget> budgetOf(const Values& options);
+// Samples per pixel in a pass, on average, unless a trial finds that fewer fit into --time.
+uint64_t passSppOf(const Values& options);
 const IntegratorMethod& integratorOf(const Values& options);
 
 // What the gather of a run counts besides clusters and shadow rays.
@@ -66,9 +68,10 @@ RenderResult joinRendered(const Film& film, const Values& options, const ShardSo
 
 // Renders the film of the scene. `lit` is of stage Lit, or empty if the integrator needs no VPLs. A
 // pure function: neither threads nor interruptions change a byte, given the same number of passes
-// if there is a budget. `preview` is called only if there is a budget.
+// if there is a budget. --time counts from `startS`, of nowS().
 RenderResult render(const RayScene& rays, const LightSet& lights, const VplTable& lit,
                     const Values& options, const ProgressFn& progress = {},
-                    const Resume& resume = {}, const PreviewFn& preview = {});
+                    const Resume& resume = {}, const FilmPreview& preview = {},
+                    double startS = nowS());
 
 }  // namespace bnvpl

@@ -24,6 +24,11 @@ inline constexpr RealOption kTargetErrorOption = unrecorded(optional(
 inline constexpr WholeOption kPassesOption = optional(
     wholeOption("passes", "", kMinPasses, 0x1p40, "",
                 "render this many passes; with --time or --target-error at most this many"));
+inline constexpr WholeOption kPassSppOption = optional(neededBy(
+    {Condition{"time"}, Condition{"target-error"}, Condition{"passes"}},
+    wholeOption("pass-spp", "", 1, 64, "",
+                "samples per pixel in a pass, on average (default: 4; with --time 2 or 1 where ten "
+                "passes of 4 would not fit)")));
 inline constexpr SwitchOption kAdaptiveOption =
     neededBy({Condition{"time"}, Condition{"target-error"}, Condition{"passes"}},
              switchOption("adaptive", "on",

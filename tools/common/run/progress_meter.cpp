@@ -36,25 +36,32 @@ std::string durationText(double seconds) {
 }
 
 std::string progressText(const std::string& what, uint64_t done, uint64_t total, double elapsedS,
-                         std::optional<double> leftS) {
+                         const ProgressNote& note) {
+  std::string known = note.leftS ? ", " + durationText(*note.leftS) + " left" : "";
+  if (note.error) {
+    char error[32];
+    std::snprintf(error, sizeof error, ", error %.2g", *note.error);
+    known += error;
+  }
   if (total == 0)
-    return what + " " + formatSi(static_cast<double>(done)) + " in " + durationText(elapsedS);
+    return what + " " + formatSi(static_cast<double>(done)) + " in " + durationText(elapsedS) +
+           known;
   const double share = static_cast<double>(done) / static_cast<double>(total);
   char percent[32];
   std::snprintf(percent, sizeof percent, " (%.0f %%)", std::floor(100.0 * share));
   return what + " " + formatSi(static_cast<double>(done)) + " of " +
-         formatSi(static_cast<double>(total)) + percent +
-         (leftS ? ", " + durationText(*leftS) + " left" : "");
+         formatSi(static_cast<double>(total)) + percent + known;
 }
 
 std::string progressJson(const std::string& stage, const std::string& phase, uint64_t done,
-                         uint64_t total, double elapsedS, std::optional<double> leftS) {
+                         uint64_t total, double elapsedS, const ProgressNote& note) {
   const auto rounded = [](double seconds) { return std::round(1e3 * seconds) / 1e3; };
   Json json{{"stage", stage}, {"phase", phase}, {"done", done}, {"total", nullptr}};
   json["elapsed_s"] = rounded(elapsedS);
   json["left_s"] = nullptr;
   if (total > 0) json["total"] = total;
-  if (leftS) json["left_s"] = rounded(*leftS);
+  if (note.leftS) json["left_s"] = rounded(*note.leftS);
+  if (note.error) json["error"] = *note.error;
   return jsonText(json);
 }
 
@@ -108,14 +115,24 @@ void ProgressMeter::endPhase() {
   nextReportS_ = 0.0;
 }
 
+void ProgressMeter::tell(const ProgressNote& note) {
+  const std::scoped_lock lock(mutex_);
+  work_.note = note;
+  work_.notedS = nowS();
+}
+
 void ProgressMeter::print(double nowS, uint64_t done) const {
   const double elapsedS = nowS - work_.startS;
-  const std::optional<double> leftS = work_.left.seconds(work_.total);
+  ProgressNote note = work_.note;
+  if (note.leftS)
+    note.leftS = std::max(0.0, *note.leftS - (nowS - work_.notedS));
+  else
+    note.leftS = work_.left.seconds(work_.total);
   if (style_ == ProgressStyle::JsonLines) {
-    ErrorLine().add(progressJson(runningTool(), work_.what, done, work_.total, elapsedS, leftS));
+    ErrorLine().add(progressJson(runningTool(), work_.what, done, work_.total, elapsedS, note));
     return;
   }
-  const std::string text = progressText(work_.what, done, work_.total, elapsedS, leftS);
+  const std::string text = progressText(work_.what, done, work_.total, elapsedS, note);
   if (terminal_)
     showProgress(text);
   else

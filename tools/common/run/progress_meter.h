@@ -17,15 +17,15 @@ namespace bnvpl {
 // "47 s", "2 min 05 s", "1 h 46 min". Negative counts as 0.
 std::string durationText(double seconds);
 
-// "samples 12M of 40M (30 %), 2 min 05 s left", without the time as long as that is unknown. If
-// `total` is 0, the text ends with the elapsed time: "samples 12M in 34 s".
+// "samples 12M of 40M (30 %), 2 min 05 s left, error 0.031", without what is unknown. If `total` is
+// 0, the text has the elapsed time instead: "samples 12M in 34 s".
 std::string progressText(const std::string& what, uint64_t done, uint64_t total, double elapsedS,
-                         std::optional<double> leftS);
+                         const ProgressNote& note);
 
 // {"stage": "vpl-render", "phase": "samples", "done": 3, "total": 9, "elapsed_s": 1.5, "left_s":
-// 3}, with null for what is unknown, such as a `total` of 0.
+// 3}, with null for what is unknown, such as a `total` of 0. "error" is there once it is known.
 std::string progressJson(const std::string& stage, const std::string& phase, uint64_t done,
-                         uint64_t total, double elapsedS, std::optional<double> leftS);
+                         uint64_t total, double elapsedS, const ProgressNote& note);
 
 enum class ProgressStyle { Silent, Lines, JsonLines };
 
@@ -40,7 +40,7 @@ class ProgressMeter {
   ProgressFn callback() {
     return {[this](uint64_t done) { add(done); },
             [this](std::string_view what, uint64_t total) { beginPhase(what, total); },
-            [this] { endPhase(); }};
+            [this] { endPhase(); }, [this](const ProgressNote& note) { tell(note); }};
   }
 
  private:
@@ -49,9 +49,12 @@ class ProgressMeter {
     uint64_t total;
     double startS;  // moved later by the time of its preparations
     TimeLeft left = {};
+    ProgressNote note = {};
+    double notedS = 0.0;
   };
   void beginPhase(std::string_view what, uint64_t total);
   void endPhase();
+  void tell(const ProgressNote& note);
   void print(double nowS, uint64_t done) const;
   double intervalS() const;
 

@@ -17,6 +17,7 @@
 #include "core/progress.h"
 #include "tools/common/files/run_files.h"
 #include "tools/common/run/checkpoint.h"
+#include "tools/common/run/clock.h"
 #include "tools/common/stage/cost.h"
 #include "tools/common/stage/scene_options.h"
 #include "tools/common/stage/shard.h"
@@ -64,6 +65,7 @@ class StageRun {
  public:
   StageRun(const std::string& name, const StageRequest& request, const ToolOptions& tool);
 
+  double startS() const { return startS_; }  // of nowS(), before any file is read
   bool estimating() const { return request_.cost.estimate; }
   // RunFiles::check() and ready(), which a run that estimates does not need.
   void checkFiles();
@@ -79,6 +81,7 @@ class StageRun {
  private:
   const StageRequest& request_;
   const ToolOptions& tool_;
+  const double startS_ = nowS();
   Summary summary_;  // begins to count time here
 };
 

@@ -4,12 +4,9 @@
 #include <array>
 
 #include "tools/common/files/streams.h"
-#include "tools/render/film/film_groups.h"
+#include "tools/render/film/film_state.h"
 #include "tools/render/film/film_sums.h"
 #include "tools/render/film/fireflies.h"
-#include "tools/render/film/splat_sums.h"
-#include "tools/render/film/tiles.h"
-#include "tools/render/splat/add_splats.h"
 
 namespace bnvpl {
 
@@ -19,162 +16,7 @@ namespace {
 // round.
 constexpr uint32_t kSamplesPerRound = 64;
 
-constexpr std::string_view kTileWork = "tiles", kPhotonWork = "photons",
-                           kFirstHitWork = "first hits", kGroupPhotonWork = "group.splats";
-
-// Sums of the samples and photons so far, and for a checkpoint how far they are: rounds, the tiles
-// of one, then photons.
-struct FilmState {
-  struct Progress {
-    uint64_t round = 0;
-    SplatProgress splats;
-  };
-  FilmState(const Film& film, bool photons, const Shard& of, const std::optional<PixelBox>& box,
-            size_t lightGroups)
-      : tiles(film),
-        pixels(size_t{film.width} * film.height),
-        counts(pixels.size()),
-        splats(photons ? pixels.size() : 0),
-        groups(pixels.size(), static_cast<uint32_t>(lightGroups)),
-        groupSplats(splats.pixels() * lightGroups),
-        shard(of),
-        crop(box) {
-    beginRound();
-  }
-  void add(const Splat& splat) {
-    splats.add(splat);
-    if (groupSplats.pixels() > 0)
-      groupSplats.add({splat.pixel * groups.count + splat.group, splat.radiance, 0});
-  }
-  void beginRound() {
-    done = unitsToDo(tiles.count(), shard);
-    for (size_t t = 0; t < done.size(); ++t) {
-      if (!tiles.meets(t, crop)) done[t] = kElsewhere;
-    }
-  }
-
-  std::string encode() {
-    std::string bytes;
-    appendArray(bytes, std::array{at});
-    appendArray(bytes, done);
-    appendArray(bytes, pixels);
-    appendArray(bytes, counts);
-    appendArray(bytes, splats.integers());
-    groups.forArrays([&](auto, const auto& array, size_t) { appendArray(bytes, array); });
-    appendArray(bytes, groupSplats.integers());
-    return bytes;
-  }
-  void decode(std::string_view bytes) {
-    std::array<Progress, 1> progress{};
-    takeArray(bytes, progress);
-    takeArray(bytes, done);
-    takeArray(bytes, pixels);
-    takeArray(bytes, counts);
-    std::vector<int64_t> integers(SplatSums::integersFor(splats.pixels()));
-    takeArray(bytes, integers);
-    groups.forArrays([&](auto, auto& array, size_t) { takeArray(bytes, array); });
-    std::vector<int64_t> ofGroups(SplatSums::integersFor(groupSplats.pixels()));
-    takeArray(bytes, ofGroups);
-    requireAllTaken(bytes);
-    groupSplats.setIntegers(ofGroups);
-    at = progress[0];
-    splats.setIntegers(integers);
-  }
-
-  void giveTo(const ShardSink& sink) {
-    std::vector<TilePixel> record;
-    for (size_t t = 0; t < tiles.count(); ++t) {
-      if (!shard.has(t) || !tiles.meets(t, crop)) continue;
-      const Tile tile = tiles.at(t);
-      record.resize(tile.pixels());
-      for (uint32_t p = 0; p < tile.pixels(); ++p) {
-        const size_t i = tiles.pixelIndex(tile, p);
-        record[p] = {pixels[i], counts[i]};
-      }
-      giveRecord(sink, kTileWork, t, record);
-    }
-    if (splats.pixels() > 0) sink.sums(kPhotonWork, splats.integers());
-    if (groupSplats.pixels() > 0) sink.sums(kGroupPhotonWork, groupSplats.integers());
-    groups.forArrays([&](std::string_view work, auto& array, size_t perPixel) {
-      forOwnTiles([&](size_t t, const Tile& tile) {
-        auto part = ofTile(tile, array, perPixel);
-        giveRecord(sink, work, t, part);
-      });
-    });
-  }
-  void takeFrom(const ShardSource& source) {
-    std::vector<TilePixel> record;
-    for (size_t t = 0; t < tiles.count(); ++t) {
-      if (!tiles.meets(t, crop)) continue;
-      const Tile tile = tiles.at(t);
-      record.resize(tile.pixels());
-      takeRecord(source, kTileWork, t, record);
-      for (uint32_t p = 0; p < tile.pixels(); ++p) {
-        const size_t i = tiles.pixelIndex(tile, p);
-        pixels[i] = record[p].sums;
-        counts[i] = record[p].counts;
-      }
-    }
-    if (splats.pixels() > 0) {
-      splats.setIntegers(source.sums(kPhotonWork, SplatSums::integersFor(splats.pixels())));
-    }
-    if (groupSplats.pixels() > 0) {
-      groupSplats.setIntegers(
-          source.sums(kGroupPhotonWork, SplatSums::integersFor(groupSplats.pixels())));
-    }
-    groups.forArrays([&](std::string_view work, auto& array, size_t perPixel) {
-      forOwnTiles([&](size_t t, const Tile& tile) {
-        auto part = ofTile(tile, array, perPixel);
-        takeRecord(source, work, t, part);
-        auto from = part.begin();
-        for (uint32_t p = 0; p < tile.pixels(); ++p, from += static_cast<std::ptrdiff_t>(perPixel))
-          std::copy_n(
-              from, perPixel,
-              array.begin() + static_cast<std::ptrdiff_t>(tiles.pixelIndex(tile, p) * perPixel));
-      });
-    });
-  }
-
-  // Calls fn(index, tile) for each tile of the shard that has a pixel of the crop.
-  template <typename Fn>
-  void forOwnTiles(const Fn& fn) const {
-    for (size_t t = 0; t < tiles.count(); ++t)
-      if (shard.has(t) && tiles.meets(t, crop)) fn(t, tiles.at(t));
-  }
-  // A tile's values of an array of the film with `perPixel` values for each pixel.
-  template <typename T>
-  std::vector<T> ofTile(const Tile& tile, const std::vector<T>& array, size_t perPixel) const {
-    std::vector<T> out;
-    for (uint32_t p = 0; p < tile.pixels(); ++p) {
-      const auto begin =
-          array.begin() + static_cast<std::ptrdiff_t>(tiles.pixelIndex(tile, p) * perPixel);
-      out.insert(out.end(), begin, begin + static_cast<std::ptrdiff_t>(perPixel));
-    }
-    return out;
-  }
-
-  struct TilePixel {  // without padding, as its bytes are saved
-    PixelSums sums;
-    PixelCounts counts;
-  };
-  Tiles tiles;
-  Progress at;
-  std::vector<uint8_t> done;  // tiles of the current round
-  std::vector<PixelSums> pixels;
-  std::vector<PixelCounts> counts;
-  SplatSums splats;
-  FilmGroups groups;
-  SplatSums groupSplats;  // photons by light group, those of a pixel one after the other
-  Shard shard;
-  std::optional<PixelBox> crop;
-};
-
-Image blankImage(const Film& film) {
-  Image image;
-  image.width = static_cast<int>(film.width);
-  image.height = static_cast<int>(film.height);
-  return image;
-}
+constexpr std::string_view kFirstHitWork = "first hits";
 
 // The rows of a crop, one after the other. `perPixel`: values of each pixel.
 template <typename T>
@@ -268,6 +110,29 @@ Image develop(const Film& size, const FilmOptions& options, FilmState& state, Fi
   return options.crop ? onFilm(image, size, *options.crop) : image;
 }
 
+// Shows the pixels of a tile that have `samples` samples.
+void showTile(const FilmState& film, const Tile& tile, uint32_t samples, Only only,
+              const FilmPreview& preview) {
+  if (!preview.tile) return;
+  std::vector<Vec3> radiance(tile.pixels());
+  for (uint32_t p = 0; p < tile.pixels(); ++p)
+    radiance[p] = meanRadiance(film.pixels[film.tiles.pixelIndex(tile, p)], only, samples);
+  preview.tile(boxOf(tile), radiance);
+}
+
+// Shows the film after `photons` of `all` photons. Samples are complete.
+void showPhotons(const Film& size, const FilmState& film, const FilmOptions& options, double done,
+                 const FilmPreview& preview) {
+  std::vector<Vec3> radiance(film.pixels.size());
+  for (size_t i = 0; i < radiance.size(); ++i) {
+    radiance[i] = meanRadiance(film.pixels[i], options.only, options.spp);
+    if (options.only == Only::Direct) continue;
+    for (size_t c = 0; c < 3; ++c)
+      radiance[i][c] += static_cast<float>(film.splats.sum(i, c) / (done * options.spp));
+  }
+  preview.image(imageOf(radiance, size));
+}
+
 }  // namespace
 
 std::optional<PixelBox> sampledPixels(const Film& film, const FilmOptions& options) {
@@ -276,7 +141,8 @@ std::optional<PixelBox> sampledPixels(const Film& film, const FilmOptions& optio
 }
 
 Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOptions& options,
-                 FilmStats& stats, const ProgressFn& progress, const Resume& resume) {
+                 FilmStats& stats, const ProgressFn& progress, const Resume& resume,
+                 const FilmPreview& preview) {
   const uint64_t key = streamKey(options.seed, Stream::PixelSamples);
   FilmState film(scene.film, static_cast<bool>(integrator.tracePhotons), resume.shard,
                  sampledPixels(scene.film, options), options.groups.size());
@@ -309,6 +175,7 @@ Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOpt
                        if (addSample(sample.radiance, film.pixels[i], film.counts[i]))
                          film.groups.add(i, sample, options.only, 1.0f);
                      });
+          showTile(film, tile, end, options.only, preview);
           report(tile);
         },
         state);
@@ -319,7 +186,14 @@ Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOpt
     if (progress) progress(film.at.splats.traced);
     addSplats(
         integrator.tracePhotons, photons, film.at.splats,
-        [&](const Splat& splat) { film.add(splat); }, progress, resume, state);
+        [&](const Splat& splat) { film.add(splat); }, progress, resume, state,
+        [&, pace = PreviewPace(nowS() + 1.0)]() mutable {
+          if (!preview.image || !pace.due()) return;
+          pace.show([&] {
+            const double done = double(film.at.splats.traced) / double(photons);
+            showPhotons(scene.film, film, options, done, preview);
+          });
+        });
     film.splats.addNonFinite(film.at.splats.nonFinite);
   }
   if (!resume.sink) return develop(scene.film, options, film, stats, options.firstHits);

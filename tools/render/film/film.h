@@ -9,6 +9,7 @@
 #include "formats/image/image.h"
 #include "scene/scene.h"
 #include "tools/render/film/film_filter.h"
+#include "tools/render/film/film_preview.h"
 #include "tools/render/film/first_hits.h"
 #include "tools/render/film/integrator_interface.h"
 #include "tools/render/film/layers.h"
@@ -45,6 +46,13 @@ inline double shownRadiance(const PixelSums& p, Only only, size_t c) {
          (only != Only::Direct ? p.sum[PixelSums::kIndirect + c] : 0.0);
 }
 
+// Mean radiance that the image shows after `samples` samples of the pixel.
+inline Vec3 meanRadiance(const PixelSums& p, Only only, double samples) {
+  Vec3 mean;
+  for (size_t c = 0; c < 3; ++c) mean[c] = static_cast<float>(shownRadiance(p, only, c) / samples);
+  return mean;
+}
+
 // The pixels whose samples the image needs; none: all.
 std::optional<PixelBox> sampledPixels(const Film& film, const FilmOptions& options);
 
@@ -53,7 +61,8 @@ std::optional<PixelBox> sampledPixels(const Film& film, const FilmOptions& optio
 // counts samples and photons. The state of `resume` holds the sums of every pixel. A shard returns
 // a blank image; the sums of its tiles and of its photons go to the sink.
 Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOptions& options,
-                 FilmStats& stats, const ProgressFn& progress = {}, const Resume& resume = {});
+                 FilmStats& stats, const ProgressFn& progress = {}, const Resume& resume = {},
+                 const FilmPreview& preview = {});
 
 // Develops the image from the sums of all shards. `photons`: whether the integrator traces photons.
 Image joinFilm(const Film& film, const FilmOptions& options, bool photons, FilmStats& stats,

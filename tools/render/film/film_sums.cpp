@@ -4,6 +4,24 @@
 
 namespace bnvpl {
 
+Image blankImage(const Film& film) {
+  Image image;
+  image.width = static_cast<int>(film.width);
+  image.height = static_cast<int>(film.height);
+  return image;
+}
+
+Image imageOf(std::span<const Vec3> radiance, const Film& film) {
+  Image image = blankImage(film);
+  size_t c = 0;
+  for (const char* name : {"R", "G", "B"}) {
+    std::vector<float>& channel = image.add(name);
+    for (size_t i = 0; i < channel.size(); ++i) channel[i] = radiance[i][c];
+    ++c;
+  }
+  return image;
+}
+
 void addRadiance(const FilmSums& film, Only only, Image& image) {
   for (size_t c = 0; c < 3; ++c) {
     std::vector<float>& data = image.add(std::string(1, "RGB"[c]));

@@ -24,6 +24,10 @@ struct FilmSums {
   }
 };
 
+// An image of the film's size without channels, and one of R, G, B.
+Image blankImage(const Film& film);
+Image imageOf(std::span<const Vec3> radiance, const Film& film);
+
 // Adds R, G, B of the light that `only` shows.
 void addRadiance(const FilmSums& film, Only only, Image& image);
 // Adds a layer's channels; none for layers of first hits, which first_hits.h adds.

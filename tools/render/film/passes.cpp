@@ -7,66 +7,18 @@
 #include "tools/common/run/clock.h"
 #include "tools/render/film/film_groups.h"
 #include "tools/render/film/fireflies.h"
+#include "tools/render/film/partial_film.h"
 #include "tools/render/film/pass_error.h"
-#include "tools/render/splat/add_splats.h"
+#include "tools/render/film/pass_trial.h"
+#include "tools/render/film/passes_state.h"
 
 namespace bnvpl {
 
 namespace {
 
 constexpr uint64_t kUniformPasses = 4;  // passes before the error estimate is used
-constexpr double kPreviewEveryS = 5.0;
-
-using Rgb = std::array<double, 3>;
-
-// What is known so far; all of it goes into a checkpoint, which is always in the middle of a pass.
-struct PassesState {
-  struct Progress {
-    uint64_t pass = 0;  // index of the current pass
-    double spentS = 0.0;
-    SplatProgress splats;
-  };
-  PassesState(size_t pixels, size_t tiles, size_t lightGroups)
-      : done(tiles),
-        spp(tiles),
-        samples(tiles),
-        inverse(tiles),
-        sums(pixels),
-        counts(pixels),
-        values(pixels),
-        squares(pixels),
-        groups(pixels, static_cast<uint32_t>(lightGroups)) {}
-
-  Progress at;
-  std::vector<uint8_t> done;        // tiles of the current pass
-  std::vector<uint32_t> spp;        // samples per pixel of each tile in the current pass
-  std::vector<uint64_t> samples;    // samples per pixel of each tile in the finished passes
-  std::vector<double> inverse;      // sum over finished passes of 1 / spp
-  std::vector<PixelSums> sums;      // sums of the passes' means
-  std::vector<PixelCounts> counts;  // sums over samples
-  std::vector<Rgb> values;          // shown R, G, B of the current pass
-  std::vector<Rgb> squares;         // sums over finished passes of squared `values`
-  FilmGroups groups;                // sums of the passes' means
-
-  template <typename Fn>
-  void forArrays(const Fn& fn) {
-    fn(done), fn(spp), fn(samples), fn(inverse), fn(sums), fn(counts), fn(values), fn(squares);
-    groups.forArrays([&](auto, auto& array, size_t) { fn(array); });
-  }
-  std::string encode() {
-    std::string bytes;
-    appendArray(bytes, std::array{at});
-    forArrays([&](const auto& array) { appendArray(bytes, array); });
-    return bytes;
-  }
-  void decode(std::string_view bytes) {
-    std::array<Progress, 1> progress{};
-    takeArray(bytes, progress);
-    at = progress[0];
-    forArrays([&](auto& array) { takeArray(bytes, array); });
-    requireAllTaken(bytes);
-  }
-};
+constexpr double kWantedPasses = 10.0;  // within the time, for the error and adaptive passes
+constexpr double kFirstPreview = 0.1;   // share of the time before the first preview
 
 class Passes {
  public:
@@ -81,27 +33,26 @@ class Passes {
         state_(size_t{scene.film.width} * scene.film.height, tiles_.count(), options.groups.size()),
         known_(state_.sums.size()) {}
 
-  void run(const ProgressFn& progress, const Resume& resume, const PreviewFn& preview) {
+  void run(const ProgressFn& progress, const Resume& resume, const FilmPreview& preview) {
     const bool resumed = !resume.state.empty();
     if (resumed) state_.decode(resume.state);
-    startS_ = nowS() - state_.at.spentS;
+    startS_ = budget_.startS - state_.at.spentS;
+    if (state_.at.passSpp == 0)
+      state_.at.passSpp = budget_.passSpp ? budget_.passSpp : trialPassSpp();
     if (progress) progress(samplesSoFar() + state_.at.splats.photons);
-    double previewS = nowS() + kPreviewEveryS;
+    PreviewPace pace(std::min(nowS() + 1.0, startS_ + kFirstPreview * budget_.timeS));
     for (bool under = resumed; under || !ended(); under = false) {
       if (!under) chooseSlots();
-      makePass(progress, resume);
+      makePass(progress, resume, preview, pace);
       closePass();
-      if (preview && nowS() >= previewS) {
-        Image image = blank();
-        addRadiance(shown().sums, options_.only, image);
-        preview(image);
-        previewS = nowS() + kPreviewEveryS;
-      }
+      if (progress)
+        progress.tell({leftS(), state_.at.pass > 1 ? std::optional(error_) : std::nullopt});
+      if (preview.image && pace.due()) pace.show([&] { preview.image(imageSoFar()); });
     }
   }
 
   Image image(FilmStats& stats, PassesDone& done) const {
-    Image image = blank();
+    Image image = blankImage(scene_.film);
     const Shown shown = this->shown();
     addRadiance(shown.sums, options_.only, image);
     addGroups(state_.groups, options_.groups, shown.sums.perSample, shown.groups, image);
@@ -111,15 +62,17 @@ class Passes {
     stats = statsOf(shown.sums, samplesSoFar());
     stats.filterPixels = shown.filterPixels;
     stats.nonFinite += state_.at.splats.nonFinite;
-    done = {state_.at.pass, error_, nowS() - startS_, endedBy_};
+    done = {state_.at.pass, error_, nowS() - startS_, passSpp(), endedBy_};
     return image;
   }
 
  private:
-  Image blank() const {
-    Image image;
-    image.width = static_cast<int>(scene_.film.width);
-    image.height = static_cast<int>(scene_.film.height);
+  uint32_t passSpp() const { return static_cast<uint32_t>(state_.at.passSpp); }
+  Image imageSoFar() const {
+    const double startS = nowS();
+    Image image = blankImage(scene_.film);
+    addRadiance(shown().sums, options_.only, image);
+    finishS_ = nowS() - startS;
     return image;
   }
   FilmSums sumsSoFar() const {
@@ -161,46 +114,96 @@ class Passes {
     const uint64_t passes = state_.at.pass;
     if (passes < kMinPasses) return false;
     const double spentS = nowS() - startS_;
-    if (spentS + spentS / double(passes) > budget_.timeS) endedBy_ = "time";
+    if (spentS + passS() + finishS() > budget_.timeS) endedBy_ = "time";
     if (passes >= kUniformPasses && budget_.error > 0.0 && error_ <= budget_.error)
       endedBy_ = "error";
-    if (passes >= budget_.passes) endedBy_ = "passes";
+    if (passes >= maxPasses()) endedBy_ = "passes";
     return !endedBy_.empty();
+  }
+  uint32_t trialPassSpp() const {
+    const double leftS = budget_.timeS - (nowS() - startS_);
+    if (!std::isfinite(leftS)) return kPassSpp;
+    return sppThatFits(scene_, integrator_, options_, leftS / kWantedPasses);
+  }
+  uint64_t maxPasses() const { return std::min(budget_.passes, budget_.spp / passSpp()); }
+  double passS() const { return passesS_ / double(std::max<uint64_t>(1, passesMade_)); }
+  // Time that the image takes once the passes are made: twice that of an image to look at, as it
+  // has other layers and is written.
+  double finishS() const {
+    if (std::isfinite(budget_.timeS) && finishS_ == 0.0) imageSoFar();
+    return 2.0 * finishS_;
+  }
+  // Seconds until the first limit of the budget is reached, as far as is known.
+  std::optional<double> leftS() const {
+    double left = budget_.timeS - (nowS() - startS_);
+    if (const uint64_t most = maxPasses(); most < UINT64_MAX / 2 / passSpp())
+      left = std::min(left, double(most - std::min(most, state_.at.pass)) * passS());
+    // The error falls with the root of the number of passes.
+    if (budget_.error > 0.0 && state_.at.pass >= kUniformPasses) {
+      const double times = std::pow(error_ / budget_.error, 2) - 1.0;
+      left = std::min(left, std::max(0.0, times) * double(state_.at.pass) * passS());
+    }
+    return std::isfinite(left) ? std::optional(left) : std::nullopt;
   }
 
   void chooseSlots() {
     const uint64_t passes = state_.at.pass;
     std::fill(state_.done.begin(), state_.done.end(), 0);
     if (passes < kUniformPasses || !budget_.adaptive || integrator_.tracePhotons) {
-      std::fill(state_.spp.begin(), state_.spp.end(), kPassSpp);
+      std::fill(state_.spp.begin(), state_.spp.end(), passSpp());
     } else {
-      state_.spp = allocateSamples(tiles_, variances_, state_.inverse, passes, kPassSpp,
+      state_.spp = allocateSamples(tiles_, variances_, state_.inverse, passes, passSpp(),
                                    random64(key_, passes, kDrawSpp));
     }
   }
 
-  void makePass(const ProgressFn& progress, const Resume& resume) {
+  void makePass(const ProgressFn& progress, const Resume& resume, const FilmPreview& preview,
+                PreviewPace& pace) {
+    const double startS = nowS();
     const auto state = [&] {
       state_.at.spentS = nowS() - startS_;
       return state_.encode();
+    };
+    // Photons come after the tiles, whose light alone would mislead.
+    const bool showTiles = state_.at.pass == 0 && !integrator_.tracePhotons;
+    PartialFilm partial(showTiles && preview.image ? scene_.film : Film{});
+    std::mutex showing;
+    const auto show = [&](size_t index) {
+      if (!showTiles || (!preview.tile && !preview.image)) return;
+      const Tile tile = tiles_.at(index);
+      std::vector<Vec3> radiance(tile.pixels());
+      for (uint32_t p = 0; p < tile.pixels(); ++p)
+        radiance[p] = meanRadiance(state_.sums[tiles_.pixelIndex(tile, p)], options_.only, 1.0);
+      if (preview.tile) preview.tile(boxOf(tile), radiance);
+      if (!preview.image) return;
+      partial.add(index, radiance);
+      const std::unique_lock lock(showing, std::try_to_lock);
+      if (lock.owns_lock() && pace.due()) pace.show([&] { preview.image(partial.image()); });
     };
     forUnitsLeft(
         state_.done, resume,
         [&](size_t index) {
           makeTile(index);
+          show(index);
           if (progress) progress(uint64_t{tiles_.at(index).pixels()} * state_.spp[index]);
         },
-        state);
-    if (!integrator_.tracePhotons) return;
-    constexpr float kShare = 1.0f / kPassSpp;
+        state, SpreadOrder(tiles_.count()));
+    if (integrator_.tracePhotons) addPhotons(progress, resume, state);
+    passesS_ += nowS() - startS;
+    ++passesMade_;
+  }
+
+  template <typename State>
+  void addPhotons(const ProgressFn& progress, const Resume& resume, const State& state) {
+    const float share = 1.0f / static_cast<float>(passSpp());
     addSplats(
-        integrator_.tracePhotons, (state_.at.pass + 1) * kPassSpp * state_.sums.size(),
+        integrator_.tracePhotons, (state_.at.pass + 1) * passSpp() * state_.sums.size(),
         state_.at.splats,
         [&](const Splat& splat) {
-          addSplat(splat, kShare, state_.sums, state_.counts);
+          addSplat(splat, share, state_.sums, state_.counts);
           if (!isFinite(splat.radiance) || options_.only == Only::Direct) return;
-          const Vec3 contribution = splat.radiance * kShare;
-          state_.groups.add(splat, kShare);
+          const Vec3 contribution = splat.radiance * share;
+          state_.groups.add(splat, share);
           for (size_t c = 0; c < 3; ++c)
             state_.values[splat.pixel][c] += double{contribution[int(c)]};
         },
@@ -258,8 +261,6 @@ class Passes {
     error_ = relativeError(variances_);
   }
 
-  // Limit of samples per pixel in a pass.
-  static constexpr uint64_t kMaxPassSpp = uint64_t{1} << 20;
   enum Draw : uint32_t { kDrawPass, kDrawSpp, kDrawOffset };
 
   const Scene& scene_;
@@ -272,6 +273,9 @@ class Passes {
   std::vector<PixelPasses> known_;  // finished passes
   std::vector<double> variances_;   // relative
   double error_ = 0.0, startS_ = 0.0;
+  double passesS_ = 0.0;  // of the passes of this run, passesMade_ in number
+  uint64_t passesMade_ = 0;
+  mutable double finishS_ = 0.0;
   std::string_view endedBy_;
 };
 
@@ -279,7 +283,7 @@ class Passes {
 
 Image renderPasses(const Scene& scene, const Integrator& integrator, const FilmOptions& options,
                    const Budget& budget, FilmStats& stats, PassesDone& done,
-                   const ProgressFn& progress, const Resume& resume, const PreviewFn& preview) {
+                   const ProgressFn& progress, const Resume& resume, const FilmPreview& preview) {
   Passes passes(scene, integrator, options, budget);
   passes.run(progress, resume, preview);
   return passes.image(stats, done);

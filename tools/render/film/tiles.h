@@ -24,6 +24,11 @@ struct Tile {
   uint32_t y(uint32_t p) const { return y0 + p / (x1 - x0); }
 };
 
+inline PixelBox boxOf(const Tile& t) {
+  return {static_cast<int>(t.x0), static_cast<int>(t.y0), static_cast<int>(t.x1),
+          static_cast<int>(t.y1)};
+}
+
 // Division of the film into tiles of 8 x 8 pixels, whose samples mostly hit the same surfaces.
 class Tiles {
  public:

@@ -17,12 +17,18 @@ struct SplatProgress {
   uint64_t traced = 0, nonFinite = 0;
 };
 
+// What addSplats() calls after each round by default.
+struct ShowNothing {
+  void operator()() const {}
+};
+
 // Traces the photons [done.photons, count) and calls add(splat) for all of their splats, in the
 // order of photons for any number of threads. Updates `done`. Shards divide rounds of photons, and
-// work can be interrupted only between rounds.
-template <typename Add, typename State>
+// work can be interrupted only between rounds, after each of which shown() is called.
+template <typename Add, typename State, typename Shown = ShowNothing>
 void addSplats(const Splatter& splatter, uint64_t count, SplatProgress& done, const Add& add,
-               const ProgressFn& progress, const Resume& resume, const State& state) {
+               const ProgressFn& progress, const Resume& resume, const State& state,
+               Shown shown = {}) {
   constexpr uint64_t kPhotonsPerChunk = 64, kChunksPerRound = 64;
   std::vector<Splats> chunks(kChunksPerRound);
   while (done.photons < count) {
@@ -46,6 +52,7 @@ void addSplats(const Splatter& splatter, uint64_t count, SplatProgress& done, co
     done.photons = end;
     done.traced += end - first;
     if (progress) progress(end - first);
+    shown();
     if (end < count && resume.pause && resume.pause()) resume.save(state());
   }
 }
