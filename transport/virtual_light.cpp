@@ -1,9 +1,12 @@
 #include "transport/virtual_light.h"
 
 #include <algorithm>
+#include <bit>
 #include <span>
 
+#include "core/random.h"
 #include "core/sampling.h"
+#include "transport/spherical_light.h"
 
 namespace bnvpl {
 
@@ -35,6 +38,23 @@ VplLights makeVplLights(const VplTable& lit, const RayScene& rays, float clamp, 
     }
   }
   return lights;
+}
+
+// A shadow ray to a centre below the receiver's horizon would end at the receiver's own surface.
+bool integratedTransfer(const VplLights& vpls, size_t i, const Bsdf& bsdf, Vec3 d,
+                        VplTransfer& out) {
+  const SurfacePoint& at = bsdf.point();
+  if (!(dot(at.ng, d) > 0.0f)) return false;
+  // Two surfaces that face the same way light each other in no direction.
+  constexpr float kSameWay = 1.0f - 1e-6f;
+  if (bsdf.diffuseOnly() && dot(at.ns, vpls.normal[i]) > kSameWay) return false;
+  // Receivers are random points, so that their coordinates make a key that differs by sample and
+  // depends on nothing else.
+  uint64_t key = i;
+  for (const float x : {at.position.x, at.position.y, at.position.z})
+    key = mix64(key ^ std::bit_cast<uint32_t>(x));
+  out = {sphericalTransfer({d, vpls.normal[i], vpls.clamp2[i]}, bsdf, key), 0.0f};
+  return !isBlack(out.transfer);
 }
 
 }  // namespace bnvpl

@@ -43,6 +43,10 @@ struct VplTransfer {
   float clampLoss = 0.0f;  // contribution that the bound removes, relative to transfer
 };
 
+// The same for kinds that are not seen from their centre. `d`: towards the VPL.
+bool integratedTransfer(const VplLights& vpls, size_t i, const Bsdf& bsdf, Vec3 d,
+                        VplTransfer& out);
+
 // Returns false if the contribution is 0 regardless of visibility, as behind either surface.
 inline bool unoccludedTransfer(const VplLights& vpls, size_t i, const Bsdf& bsdf,
                                VplTransfer& out) {
@@ -51,6 +55,7 @@ inline bool unoccludedTransfer(const VplLights& vpls, size_t i, const Bsdf& bsdf
   if (!(d2 > 0.0f)) return false;
   const float facing = withKind(vpls.kind, [&](auto k) { return k.emitted(vpls.normal[i], d); });
   if (facing <= 0.0f) return false;
+  if (!isFromCentre(vpls.kind)) return integratedTransfer(vpls, i, bsdf, d, out);
   const float invDistance = 1.0f / std::sqrt(d2);
   const Vec3 value = bsdf.eval(LobeGroup::Rough, d * invDistance);
   if (isBlack(value)) return false;

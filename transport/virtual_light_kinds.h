@@ -8,6 +8,9 @@
 //              d2 and not decrease with d2
 //   removed    share of a point light's 1/d^2 that the kind leaves out at a distance, and that
 //              compensation adds back: 1 - d^2 / boundedDistance2
+//   fromCentre whether the light is the product of BSDF, cosines and falloff towards the VPL. Else
+//              transport/spherical_light.h integrates it, falloff is a typical value, and no
+//              bounds hold
 //   emitted    emission in a direction relative to that along the axis, times the distance
 //   mostEmitted, leastEmitted, expectedEmitted
 //              the same for a cluster whose axes fill a cone, without the distance: an upper bound
@@ -31,6 +34,7 @@ namespace bnvpl {
 
 // Emits like a diffuse surface.
 struct LambertEmission {
+  static constexpr bool fromCentre = true;
   static float emitted(Vec3 axis, Vec3 toLight) { return -dot(axis, toLight); }
   // `cosine` is that of the direction with the axis of the cone, which has the given half angle.
   template <typename F>
@@ -95,10 +99,24 @@ struct YukselLight : LambertEmission {
   }
 };
 
+// A sphere of radius `size` (Hasan et al. 2009), which moves near light instead of removing it. Its
+// falloff is that towards a surface that faces it.
+struct SphericalLight : LambertEmission {
+  static constexpr std::string_view name = "spherical";
+  static constexpr bool fromCentre = false;
+  template <typename F>
+  static F boundedDistance2(F d2, F size2) {
+    const F outside2 = larger(d2, size2), one = everyLane<F>(1.0f);
+    const F cos2 = one - size2 / outside2, cosine = squareRoot(cos2);
+    return larger(everyLane<F>(1.5f) * outside2 * (one + cosine) / (one + cosine + cos2), d2);
+  }
+  static float removed(float) { return 0.0f; }
+};
+
 template <typename... Kinds>
 struct KindList {
   static constexpr std::array<std::string_view, sizeof...(Kinds)> names{Kinds::name...};
-  // "point|disk|yuksel"
+  // "point|disk|yuksel|spherical"
   static constexpr auto choices = [] {
     std::array<char, (Kinds::name.size() + ...) + sizeof...(Kinds) - 1> text{};
     auto at = text.begin();
@@ -111,7 +129,7 @@ struct KindList {
 };
 
 // Every kind; the first is the default.
-using LightKinds = KindList<PointLight, DiskLight, YukselLight>;
+using LightKinds = KindList<PointLight, DiskLight, YukselLight, SphericalLight>;
 inline constexpr std::string_view kLightKinds{LightKinds::choices.data(),
                                               LightKinds::choices.size()};
 
@@ -138,6 +156,10 @@ auto withKindOf(KindList<First, Rest...>, size_t place, const Fn& fn) {
 template <typename Fn>
 auto withKind(LightKind kind, const Fn& fn) {
   return withKindOf(LightKinds{}, static_cast<size_t>(kind), fn);
+}
+
+inline bool isFromCentre(LightKind kind) {
+  return withKind(kind, [](auto k) { return k.fromCentre; });
 }
 
 // The kind's falloff, which replaces 1/d^2, in 1/m2.

@@ -9,6 +9,8 @@ namespace {
 // Lower bound of the squared distance to a cluster, over its squared radius: most of a cluster
 // around the point is farther away than its centre (measured).
 constexpr float kClosest = 2.0f;
+// Least cosine with which spheres count, whose light may come from across a horizon.
+constexpr float kLeastOfSphere = 0.1f;
 
 __m128 all(float v) { return _mm_set1_ps(v); }
 __m128 load(const std::array<float, 4>& lanes) { return _mm_load_ps(lanes.data()); }  // aligned
@@ -113,8 +115,9 @@ VplSampler::Lanes VplSampler::Point::likelyOf(uint32_t four) const {
   const __m128 zero = _mm_setzero_ps();
   // Emission leaves in the opposite directions, so the axes are negated instead.
   const __m128 back = to.most(zero - load(f.ax), zero - load(f.ay), zero - load(f.az));
-  const __m128 emitter = Kind::mostEmitted(back, load(f.cosHalf), load(f.sinHalf));
-  const __m128 cosine = to.most(all(normal_.x), all(normal_.y), all(normal_.z));
+  const __m128 least = Kind::fromCentre ? zero : all(kLeastOfSphere);
+  const __m128 emitter = larger(Kind::mostEmitted(back, load(f.cosHalf), load(f.sinHalf)), least);
+  const __m128 cosine = larger(to.most(all(normal_.x), all(normal_.y), all(normal_.z)), least);
   __m128 value;
   if (diffuse_) {
     value =
@@ -131,8 +134,7 @@ VplSampler::Lanes VplSampler::Point::likelyOf(uint32_t four) const {
     value = load(sums);
   }
   const __m128 away2 = larger(d2, all(kClosest) * radius2);
-  return store(value * larger(cosine, zero) * emitter /
-               Kind::boundedDistance2(away2, load(f.clamp2)));
+  return store(value * cosine * emitter / Kind::boundedDistance2(away2, load(f.clamp2)));
 }
 
 std::optional<VplSampler::Draw> VplSampler::Point::draw(float u, Rng& rng) const {

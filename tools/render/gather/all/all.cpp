@@ -37,6 +37,10 @@ Gather make(const GatherInputs& in, const Values&) {
 }  // namespace
 
 extern const GatherMethod method;
-const GatherMethod method{"all", "all VPLs: the reference for a set of VPLs", {}, make};
+const GatherMethod method{.name = "all",
+                          .summary = "all VPLs: the reference for a set of VPLs",
+                          .options = {},
+                          .make = make,
+                          .everyLight = true};
 
 }  // namespace bnvpl::methods::gather::all

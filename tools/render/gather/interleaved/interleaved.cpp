@@ -105,6 +105,7 @@ const GatherMethod method{
     .options = kOptions,
     .make = make,
     .filmFilter = filmFilter,
-    .lightGroups = false};
+    .lightGroups = false,
+    .everyLight = true};
 
 }  // namespace bnvpl::methods::gather::interleaved

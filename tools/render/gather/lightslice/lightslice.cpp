@@ -160,7 +160,10 @@ Gather make(const GatherInputs& in, const Values& options) {
 
 extern const GatherMethod method;
 const GatherMethod method{
-    "lightslice", "VPLs clustered for each slice of the visible points, by rows of their matrix",
-    kOptions, make};
+    .name = "lightslice",
+    .summary = "VPLs clustered for each slice of the visible points, by rows of their matrix",
+    .options = kOptions,
+    .make = make,
+    .everyLight = true};
 
 }  // namespace bnvpl::methods::gather::lightslice

@@ -125,6 +125,10 @@ Gather make(const GatherInputs& in, const Values& options) {
 
 extern const GatherMethod method;
 const GatherMethod method{
-    "mrcs", "VPLs clustered once for the film, by sampled rows of their matrix", kOptions, make};
+    .name = "mrcs",
+    .summary = "VPLs clustered once for the film, by sampled rows of their matrix",
+    .options = kOptions,
+    .make = make,
+    .everyLight = true};
 
 }  // namespace bnvpl::methods::gather::mrcs

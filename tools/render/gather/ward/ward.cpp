@@ -120,8 +120,11 @@ Gather make(const GatherInputs& in, const Values& options) {
 }  // namespace
 
 extern const GatherMethod method;
-const GatherMethod method{"ward",
-                          "VPLs sorted by contribution, shadow-tested until the rest is negligible",
-                          kOptions, make};
+const GatherMethod method{
+    .name = "ward",
+    .summary = "VPLs sorted by contribution, shadow-tested until the rest is negligible",
+    .options = kOptions,
+    .make = make,
+    .everyLight = true};
 
 }  // namespace bnvpl::methods::gather::ward

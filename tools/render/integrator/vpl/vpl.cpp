@@ -16,12 +16,12 @@ namespace {
 constexpr auto kLightOption =
     neededBy(kIndirectIsShown, choiceOption("light", "point", kLightKinds,
                                             "model of a VPL: a point with a bound on 1/d^2, a "
-                                            "disk, or attenuation without singularity"));
+                                            "disk, attenuation without singularity, or a sphere"));
 constexpr auto kClampOption = neededBy(
     kIndirectIsShown,
     inTopic(Topic::Expert, realOption("clamp", "2", 0, 1000, "r_max",
                                       "radius of a VPL: 1/d^2 of a point is clamped within "
-                                      "it; a disk has this radius")));
+                                      "it; disks and spheres have this radius")));
 constexpr auto kNearFieldRaysOption =
     neededBy({Condition{"only", "all|indirect"}, Condition{"direct-samples", "1"}},
              wholeOption("near-field-rays", "8", 1, 4096, "",
@@ -83,6 +83,27 @@ Gather makeGather(const IntegratorInputs& in, const Values& options, const FilmR
   return gather;
 }
 
+// The kind of light, unless the gather or the compensation cannot take it.
+LightKind lightOf(const Values& options, const CompensateMethod* compensate) {
+  const std::string& name = options[kLightOption];
+  const LightKind kind = lightKindNamed(name);
+  if (isFromCentre(kind)) return kind;
+  const GatherMethod* gather = gatherOf(options);
+  if (gather && !gather->everyLight) {
+    std::string others;
+    for (const GatherMethod* m : gatherMethods())
+      if (m->everyLight) others += (others.empty() ? "" : ", ") + std::string(m->name);
+    throw UsageError("--light " + name + ": the bounds of --gather " + std::string(gather->name) +
+                     " hold for VPLs seen from their centre only; choose another gather (" +
+                     others + ") or another light");
+  }
+  if (compensate && compensate->oneSize)
+    throw UsageError("--light " + name + " removes no light that --compensate " +
+                     std::string(compensate->name) +
+                     " could add back; choose another compensation or another light");
+  return kind;
+}
+
 uint64_t causticPhotons(const IntegratorInputs& in, const Values& options) {
   constexpr uint64_t kMaxPhotons = 16000000;  // they take seconds, in each shard
   return in.only == Only::Direct
@@ -95,11 +116,11 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   // Direct light needs no VPLs, so their clamp and kind are arbitrary.
   const bool indirect = in.only != Only::Direct;
   const float clamp = indirect ? options.real32(kClampOption) : 1.0f;
-  const LightKind light = indirect ? lightKindNamed(options[kLightOption]) : LightKind{};
   const auto parts = std::make_shared<Parts>();
   const CompensateMethod* compensate =
       options.has(kCompensateSlot) ? &methodNamed(compensateMethods(), options[kCompensateSlot])
                                    : nullptr;
+  const LightKind light = indirect ? lightOf(options, compensate) : LightKind{};
   parts->vpls = makeVplLights(in.lit, in.rays, clamp, light, in.litGroups,
                               compensate && compensate->oneSize ? commonRadius(in.lit) : 0.0f);
   Compensation compensation;
