@@ -51,7 +51,8 @@ std::vector<Given> waysToRender() {
                           {{"only", "direct"}},
                           {{"only", "indirect"}},
                           {{"passes", "3"}, {"spp", "12"}},
-                          {{"direct", "each"}, {"light", "disk"}}};
+                          {{"direct", "each"}, {"light", "disk"}},
+                          {{"gather", "matrix-completion"}, {"slices", "8"}, {"columns", "60"}}};
   for (const char* gather : {"all", "tilecuts", "lightcuts", "stochastic", "lightslice", "ward"})
     ways.push_back({{"gather", gather}});
   return ways;

@@ -90,8 +90,7 @@ void ClusterDraws::add(std::span<const uint32_t> cluster, std::span<const double
 
 Gathered ClusterDraws::gather(const GatherInputs& in, const TileReceivers& tile, size_t i) const {
   Gathered out;
-  const size_t sample = tile.firstSample + i / tile.pixels;
-  const auto& draws = draws_[(tile.sequenceOffset + sample) % kTurns];
+  const std::span<const VplDraw> draws = of(tile, tile.firstSample + i / tile.pixels);
   const ShadowTest test(in.rays, in.vpls, *tile.bsdf[i], tile.groupsOf(i));
   for (const VplDraw& d : draws) test.add(d.index, d.weight, out);
   out.cut = static_cast<uint32_t>(draws.size());

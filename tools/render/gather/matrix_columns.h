@@ -77,6 +77,10 @@ class ClusterDraws {
  public:
   // Draws from a further cluster.
   void add(std::span<const uint32_t> cluster, std::span<const double> shares, Rng& rng);
+  // The VPLs of the turn of a sample, by its index within the pixel.
+  std::span<const VplDraw> of(const TileReceivers& tile, size_t sample) const {
+    return draws_[(tile.sequenceOffset + sample) % kTurns];
+  }
   // Light of the VPLs of one turn at receiver i of the tile.
   Gathered gather(const GatherInputs& in, const TileReceivers& tile, size_t i) const;
 

@@ -1,0 +1,129 @@
+#include "tools/render/gather/matrix_slices.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "core/parallel.h"
+#include "tools/common/files/streams.h"
+
+namespace bnvpl {
+
+namespace {
+
+constexpr double kCommonShare = 0.3;  // clusters found for all slices, over those of a slice
+
+using Vector = std::valarray<double>;
+using Placed = PlacedPoint;
+
+Vector placeOf(const SurfacePoint& p, float scale) {
+  const Vec3 x = p.position, n = p.ns * scale;
+  return {double{x.x}, double{x.y}, double{x.z}, double{n.x}, double{n.y}, double{n.z}};
+}
+
+// Moves elements below the middle of the range of values to the front. Returns their number, or
+// half the size if that would be all or none.
+template <typename T, typename Value>
+size_t divideAtMiddle(std::span<T> all, const Value& value) {
+  const auto ends = std::ranges::minmax_element(all, {}, value);
+  const auto middle = 0.5 * (value(*ends.min) + value(*ends.max));
+  const auto isBelow = [&](const T& t) { return value(t) < middle; };
+  const auto below =
+      static_cast<size_t>(std::partition(all.begin(), all.end(), isBelow) - all.begin());
+  return below == 0 || below == all.size() ? all.size() / 2 : below;
+}
+
+// Splits points along the longest of six sides until a slice has at most `most` points.
+void slice(std::span<Placed> points, size_t most, Rng& rng, std::vector<Placed>& slices) {
+  Vector middle(6), side(6);
+  for (size_t a = 0; a < 6; ++a) {
+    const auto on = [a](const Placed& p) { return p.at[a]; };
+    const auto ends = std::ranges::minmax_element(points, {}, on);
+    const double low = on(*ends.min), high = on(*ends.max);
+    middle[a] = 0.5 * (low + high), side[a] = high - low;
+  }
+  if (points.size() <= most) {
+    const auto pick = static_cast<size_t>(double{rng.next()} * double(points.size()));
+    slices.push_back({middle, points[pick].point});
+    return;
+  }
+  const auto axis = std::max_element(begin(side), end(side)) - begin(side);
+  const size_t below = divideAtMiddle(points, [&](const Placed& p) { return p.at[axis]; });
+  slice(points.first(below), most, rng, slices);
+  slice(points.subspan(below), most, rng, slices);
+}
+
+// Splits a cluster along the line between its two longest columns. Returns one part and leaves the
+// other.
+Cluster splitOff(Cluster& cluster, const Columns& columns) {
+  std::ranges::partial_sort(cluster, cluster.begin() + 2, std::greater{},
+                            [&](uint32_t i) { return columns.norm(i); });
+  const std::span<const float> a = columns[cluster[0]], b = columns[cluster[1]];
+  const auto along = [&](uint32_t i) {
+    const std::span<const float> c = columns[i];
+    double sum = 0.0;
+    for (size_t k = 0; k < c.size(); ++k) sum += double{c[k]} * (double{a[k]} - double{b[k]});
+    return sum;
+  };
+  const size_t below = divideAtMiddle(std::span(cluster), along);
+  const Cluster part(cluster.begin() + below, cluster.end());
+  cluster.erase(cluster.begin() + below, cluster.end());
+  return part;
+}
+
+// Columns restricted to the rows of the `count` slices nearest to `slice`.
+Columns rowsAbout(const Placed& slice, const std::vector<Placed>& slices, size_t count,
+                  const Columns& columns) {
+  std::vector<size_t> order(slices.size());
+  std::iota(order.begin(), order.end(), size_t{0});
+  std::ranges::stable_sort(order, {}, [&](size_t k) {
+    return ((slice.at - slices[k].at) * (slice.at - slices[k].at)).sum();
+  });
+  return columns.inRows(std::span(order).first(std::min(order.size(), count)));
+}
+
+}  // namespace
+
+size_t SlicePlan::sliceOf(const SurfacePoint& point) const {
+  const Vector here = placeOf(point, scale);
+  const auto apart = [&](const Placed& s) { return ((s.at - here) * (s.at - here)).sum(); };
+  return static_cast<size_t>(std::ranges::min_element(slices, {}, apart) - slices.begin());
+}
+
+SlicePlan makeSlicePlan(const GatherInputs& in, const Values& options) {
+  SlicePlan plan;
+  std::vector<SurfacePoint> film = in.primaryPoints().points;
+  std::erase_if(film, [](const SurfacePoint& p) { return p.triangle == kNone; });
+  if (film.empty()) return plan;
+  Bounds seen;
+  for (const SurfacePoint& p : film) seen.extend(p.position);
+  plan.scale = mean(seen.upper - seen.lower) / 8.0f;
+  std::vector<Placed> points;
+  for (const SurfacePoint& p : film) points.push_back({placeOf(p, plan.scale), p});
+  const uint64_t key = streamKey(in.seed, Stream::LightTree) + 1;
+  Rng rng(key, 0);
+  slice(points, std::max<size_t>(1, points.size() / options[kSlicesOption]), rng, plan.slices);
+
+  std::vector<SurfacePoint> rows;
+  for (const Placed& s : plan.slices) rows.push_back(s.point);
+  const Columns columns = columnsAt(in, rows, "slices");
+  Cluster vpls(columns.size());
+  std::iota(vpls.begin(), vpls.end(), 0u);
+  std::erase_if(vpls, [&](uint32_t i) { return columns.norm(i) == 0.0; });  // no slice sees them
+  if (vpls.empty()) return plan;
+  const auto count = static_cast<size_t>(options[kColumnsOption]);
+  const std::vector<Cluster> common = clustersBySampling(
+      vpls, columns, static_cast<size_t>(std::ceil(kCommonShare * double(count))), rng);
+  plan.draws.resize(plan.slices.size());
+  parallelFor(plan.slices.size(), 1, [&](size_t s) {
+    Rng own(key, s + 1);
+    const Columns local =
+        rowsAbout(plan.slices[s], plan.slices, options[kNeighbourSlicesOption], columns);
+    const std::vector<Cluster> clusters = refinedClusters(
+        common, count, local, false, [&](Cluster& c) { return splitOff(c, local); });
+    for (const Cluster& cluster : clusters) plan.draws[s].add(cluster, columns.norms(), own);
+  });
+  return plan;
+}
+
+}  // namespace bnvpl

@@ -1,0 +1,38 @@
+// Slices of the visible points, and the clusters of VPLs of each (Ou & Pellacini, "LightSlice:
+// Matrix Slice Sampling for the Many-Lights Problem", SIGGRAPH Asia 2011).
+#pragma once
+
+#include <valarray>
+#include <vector>
+
+#include "tools/render/gather/matrix_columns.h"
+
+namespace bnvpl {
+
+inline constexpr WholeOption kSlicesOption =
+    countOption("slices", "300", 0x1p20, "", "minimal number of groups of neighbouring points");
+inline constexpr WholeOption kColumnsOption =
+    countOption("columns", "400", 0x1p20, "", "clusters of VPLs for each slice");
+inline constexpr WholeOption kNeighbourSlicesOption =
+    countOption("neighbour-slices", "8", 1024, "", "rows that refine a slice's clusters");
+
+// A point with its position and scaled normal; or a slice with its centre and a point that
+// represents it.
+struct PlacedPoint {
+  std::valarray<double> at;
+  SurfacePoint point;
+};
+
+// The VPLs of each slice, one per cluster.
+struct SlicePlan {
+  float scale = 1.0f;  // scale of normals
+  std::vector<PlacedPoint> slices;
+  std::vector<ClusterDraws> draws;  // empty if no slice sees a VPL
+  // The slice with the nearest centre. There are slices.
+  size_t sliceOf(const SurfacePoint& point) const;
+};
+
+// Evaluates a row of the matrix for each slice and finds its clusters. Reads the options above.
+SlicePlan makeSlicePlan(const GatherInputs& in, const Values& options);
+
+}  // namespace bnvpl
