@@ -31,7 +31,7 @@ else()
   message(STATUS "No Python 3.11: manual pages, completion and the Python package will not be installed")
 endif()
 
-install(DIRECTORY pipelines scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/bnvpl USE_SOURCE_PERMISSIONS COMPONENT data
+install(DIRECTORY pipelines scenes blender DESTINATION ${CMAKE_INSTALL_DATADIR}/bnvpl USE_SOURCE_PERMISSIONS COMPONENT data
         PATTERN __pycache__ EXCLUDE PATTERN ".git*" EXCLUDE)
 
 # Pages keep their places, so that their links to each other lead somewhere.

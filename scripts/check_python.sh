@@ -28,6 +28,7 @@ check() {
     --cache-dir "build/mypy/${1//[:\/]/_}" "${@:2}" || failed=1
 }
 check install install/*.py tests/install/*.py
+check blender:python blender/bnvpl_blender/*.py blender/tests/*.py
 check bench:pipelines:eval:python bench/*.py
 check docs:eval/scaling docs/*.py
 check eval:eval/report:pipelines:python eval/*.py eval/bnvpl_eval eval/tests/*.py

@@ -1,0 +1,194 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The commands of the four tools, and a runner that can be stopped."""
+
+from __future__ import annotations
+
+import json
+import queue
+import shlex
+import shutil
+import subprocess
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import IO
+
+TOOLS = ("vpl-place", "vpl-eliminate", "vpl-estimate", "vpl-render")
+
+
+class ToolError(RuntimeError):
+    """A tool failed; the text is its own."""
+
+
+# Part of vpl-place's error where the surfaces in view light no others.
+NOTHING_BOUNCES = " VPLs found on "
+
+
+class Cancelled(Exception):
+    """The user stopped the render."""
+
+
+@dataclass(frozen=True)
+class Preset:
+    """Counts and options of the stages, those of pipelines/quality.mk."""
+
+    candidates: str
+    vpls: int
+    photons: str
+    samples: int
+    estimate: tuple[str, ...] = ()
+    render: tuple[str, ...] = ()
+
+
+PRESETS = {
+    "DRAFT": Preset(
+        "15k", 1500, "1M", 16, ("--irradiance-error", "0.02"),
+        ("--near-field-rays", "2", "--error", "0.1"),
+    ),
+    "DEFAULT": Preset("120k", 3000, "10M", 16),
+    "FINAL": Preset(
+        "240k", 12000, "20M", 256, ("--irradiance-error", "0.002"),
+        ("--near-field-rays", "4", "--error", "0.05"),
+    ),
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Request:
+    """What is to be rendered; zero leaves a number to the preset."""
+
+    preset: str = "DEFAULT"
+    vpls: int = 0
+    samples: int = 0
+    seed: int = 1
+    threads: int = 0
+    layers: tuple[str, ...] = ()
+    transparent: bool = False
+
+
+def find_tool(tool: str, folder: str) -> str:
+    """Path of a tool in the folder, or on the PATH where no folder is given."""
+    found = shutil.which(tool, path=folder or None)
+    if found is None:
+        where = f"in {folder}" if folder else "on the PATH"
+        raise ToolError(f"{tool} is not {where}; set the folder in the add-on's preferences")
+    return found
+
+
+def _candidates(preset: Preset, vpls: int) -> str:
+    """The preset's number; more where VPLs ask for more: ten candidates for each."""
+    counted = int(preset.candidates.removesuffix("k")) * 1000
+    return preset.candidates if 10 * vpls <= counted else str(10 * vpls)
+
+
+def commands(request: Request) -> list[list[str]]:
+    """The four command lines, for the folder that holds scene.toml."""
+    preset = PRESETS[request.preset]
+    vpls = request.vpls or preset.vpls
+    seed = ["--seed", str(request.seed)] if request.seed != 1 else []
+    threads = ["--threads", str(request.threads)] if request.threads else []
+    common = seed + threads
+    render = ["vpl-render", "scene.toml", "lit.vpl", "-o", "image.exr"]
+    render += ["--spp", str(request.samples or preset.samples), *preset.render, *common]
+    if request.transparent:
+        render += ["--transparent", "on"]
+    if request.layers:
+        render += ["--layers", ",".join(request.layers)]
+    return [
+        ["vpl-place", "scene.toml", "-o", "candidates.vpl", "-n", _candidates(preset, vpls)]
+        + common,
+        ["vpl-eliminate", "candidates.vpl", "-o", "vpls.vpl", "-n", str(vpls), *threads],
+        ["vpl-estimate", "scene.toml", "vpls.vpl", "-o", "lit.vpl", "--photons", preset.photons]
+        + [*preset.estimate, *common],
+        render,
+    ]
+
+
+def path_command(request: Request) -> list[str]:
+    """The command line for a view in which VPLs find no place: paths need none."""
+    vpls = commands(request)[-1]
+    words = [word for word in vpls if word not in PRESETS[request.preset].render]
+    words.remove("lit.vpl")
+    return words + ["--integrator", "path"]
+
+
+def script(lines: list[list[str]]) -> str:
+    """A shell script that renders the folder again."""
+    head = ["#!/bin/sh -e", 'cd "$(dirname "$0")"']
+    return "\n".join(head + [shlex.join(command) for command in lines]) + "\n"
+
+
+@dataclass(frozen=True)
+class Progress:
+    tool: str
+    phase: str
+    share: float  # done part of the phase, 0 to 1
+    left_s: float | None
+
+
+def _progress(tool: str, line: str) -> Progress | None:
+    if not line.startswith("{"):
+        return None
+    told = json.loads(line)
+    share = told["done"] / told["total"] if told["total"] else 0.0
+    return Progress(tool, told["phase"], min(1.0, share), told["left_s"])
+
+
+def _send_lines(stream: IO[str], lines: queue.Queue[str | None]) -> None:
+    for line in stream:
+        lines.put(line.strip())
+    lines.put(None)
+
+
+def run_lines(
+    command: list[str], folder: Path, on_line: Callable[[str], object], stop: Callable[[], bool]
+) -> int:
+    """Runs a command and gives every line of its output. Returns its exit code."""
+    lines: queue.Queue[str | None] = queue.Queue()
+    with subprocess.Popen(
+        command, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT, text=True, errors="replace",
+    ) as child:  # fmt: skip
+        assert child.stdout is not None
+        reader = threading.Thread(target=_send_lines, args=(child.stdout, lines), daemon=True)
+        reader.start()
+        try:
+            while not stop():
+                try:
+                    line = lines.get(timeout=0.1)
+                except queue.Empty:
+                    continue
+                if line is None:
+                    return child.wait()
+                on_line(line)
+            raise Cancelled
+        except BaseException:
+            child.terminate()
+            reader.join()
+            raise
+
+
+def run_tool(
+    command: list[str],
+    folder: Path,
+    bin_folder: str,
+    on_progress: Callable[[Progress], object],
+    stop: Callable[[], bool],
+) -> list[str]:
+    """Runs a tool in a folder and returns its warnings. Raises ToolError with its error."""
+    tool = command[0]
+    told: list[str] = []
+
+    def listen(line: str) -> None:
+        progress = _progress(tool, line)
+        if progress is not None:
+            on_progress(progress)
+        elif line:
+            told.append(line)
+
+    words = [find_tool(tool, bin_folder), *command[1:], "--quiet", "--progress", "json"]
+    code = run_lines(words, folder, listen, stop)
+    if code:
+        raise ToolError(told[-1] if told else f"{tool}: exit code {code}")
+    return told
