@@ -30,7 +30,7 @@ check() {
 check install install/*.py tests/install/*.py
 check blender:python blender/bnvpl_blender/*.py blender/tests/*.py
 check bench:pipelines:eval:python bench/*.py
-check docs:eval/scaling docs/*.py
+check docs:eval/scaling:eval/report:eval:pipelines docs/*.py
 check eval:eval/report:pipelines:python eval/*.py eval/bnvpl_eval eval/tests/*.py
 check eval/cycles:pipelines eval/cycles/*.py
 check eval/scaling:bench:pipelines eval/scaling/*.py
