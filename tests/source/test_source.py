@@ -30,6 +30,7 @@ RENDER = [
     ],
     ["splat"],
     ["film"],
+    ["preview"],
     ["light_tree"],
     ["gather"],
     ["compensate"],

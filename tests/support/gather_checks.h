@@ -44,8 +44,7 @@ struct GatherCase {
 // A box whose blocks hide many VPLs, and a room lit through a door.
 inline const std::vector<const GatherCase*>& gatherCases() {
   const auto caseOf = [](const char* name) {
-    return GatherCase(name, {32, 24}, {{"count", "300"}}, {{"photons", "20k"}},
-                      {{"count", "3k"}});
+    return GatherCase(name, {32, 24}, {{"count", "300"}}, {{"photons", "20k"}}, {{"count", "3k"}});
   };
   static const GatherCase box = caseOf("cornell/scene.toml"),
                           door = caseOf("veach-door/scene.toml");

@@ -6,7 +6,6 @@
 #include "tools/common/stage/stage_run.h"
 #include "tools/render/cost_of_rendering.h"
 #include "tools/render/inputs.h"
-#include "tools/render/outputs.h"
 #include "tools/render/preview_outputs.h"
 
 namespace bnvpl {
@@ -17,8 +16,7 @@ int runRender(const StageRequest& request, const RenderFiles& files, const ToolO
   const Values options = resolveRender(request.given);
   requireConsistent(options, request.given, files, request.shard.has_value());
   run.used.reads("scene", request.scene.file).reads("lit", files.lit);
-  std::optional<ViewerAddress> address;
-  if (!files.viewer.empty() && !run.estimating()) address = parseViewerAddress(files.viewer);
+  Previews previews(files.viewer);
   run.used.writes("-o", request.output, {request.shard ? OutputKind::Shard : OutputKind::Exr});
   run.used.writes("--png", files.png, {OutputKind::Png});
   run.checkFiles();
@@ -52,14 +50,12 @@ int runRender(const StageRequest& request, const RenderFiles& files, const ToolO
   };
   const ImagePaths images{request.output, files.png};
   const auto whole = [&](const StageTask& task) {
-    std::optional<LiveViewer> viewer;
-    if (address) viewer.emplace(*address, request.output.string(), film.width, film.height);
-    RenderResult all = result(task, previewTo(images, options, viewer ? &*viewer : nullptr));
+    RenderResult all = result(task, previews.begin(images, options, film));
     const Values made = optionsMade(all, request.given);
     finishImage(all, made, extendProvenance(lit.provenance, record(recordOf(renderSpec(), made))));
     reportRender(all, made, task.summary);
     addImages(task.files, images, all.image, options, task.summary);
-    if (viewer) showFinished(*viewer, *address, all.image, task.summary);
+    previews.finish(all.image, task.summary);
   };
   const auto part = [&](const StageTask& task) -> ShardRun {
     const Json made = record(recordOf(renderSpec(), options));

@@ -2,27 +2,32 @@
 
 namespace bnvpl {
 
-FilmPreview previewTo(const ImagePaths& paths, const Values& options, LiveViewer* viewer) {
+Previews::Previews(const std::string& viewer) {
+  if (!viewer.empty()) address_ = parseViewerAddress(viewer);
+}
+
+FilmPreview Previews::begin(const ImagePaths& paths, const Values& options, const Film& film) {
   FilmPreview preview;
-  if (viewer) {
-    preview.tile = [viewer](const PixelBox& box, std::span<const Vec3> radiance) {
-      viewer->show(box, radiance);
+  if (address_) {
+    viewer_.emplace(*address_, paths.exr.string(), film.width, film.height);
+    preview.tile = [this](const PixelBox& box, std::span<const Vec3> radiance) {
+      viewer_->show(box, radiance);
     };
   }
   const fs::path png = budgetOf(options) ? paths.png : fs::path();
-  if (!viewer && png.empty()) return preview;
-  preview.image = [viewer, png, &options](const Image& image) {
-    if (viewer) viewer->show(image);
+  if (!viewer_ && png.empty()) return preview;
+  preview.image = [this, png, &options](const Image& image) {
+    if (viewer_) viewer_->show(image);
     if (!png.empty()) writePng(png, image, options);
   };
   return preview;
 }
 
-void showFinished(LiveViewer& viewer, const ViewerAddress& address, const Image& image,
-                  Summary& summary) {
-  viewer.show(image);
-  const uint64_t blocks = viewer.finish();
-  const std::string at = address.host + ":" + std::to_string(address.port);
+void Previews::finish(const Image& image, Summary& summary) {
+  if (!viewer_) return;
+  viewer_->show(image);
+  const uint64_t blocks = viewer_->finish();
+  const std::string at = address_->host + ":" + std::to_string(address_->port);
   summary.add("preview_blocks", blocks,
               blocks > 0
                   ? "shown by the viewer at " + at + " in " + std::to_string(blocks) + " updates"

@@ -13,10 +13,8 @@ inline constexpr WholeOption kSppOption = inTopic(
         "spp", "16", kUnlimitedSpp, "",
         "samples per pixel; with --time, --target-error or --passes an upper limit, if given"));
 inline constexpr RealOption kTimeOption =
-    inTopic(Topic::Speed,
-            unrecorded(optional(durationOption("time",
-                                               "render passes over the film, as many as are "
-                                               "expected to end within this time; at least two"))));
+    inTopic(Topic::Speed, unrecorded(optional(durationOption(
+                              "time", "as many passes over the film as fit into this time"))));
 inline constexpr RealOption kTargetErrorOption = unrecorded(optional(
     inTopic(Topic::Quality,
             realOption("target-error", "", 0.0001, 10, "",

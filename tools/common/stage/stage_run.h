@@ -65,7 +65,7 @@ class StageRun {
  public:
   StageRun(const std::string& name, const StageRequest& request, const ToolOptions& tool);
 
-  double startS() const { return startS_; }  // of nowS(), before any file is read
+  double startS() const { return startS_; }  // by nowS(), before any file is read
   bool estimating() const { return request_.cost.estimate; }
   // RunFiles::check() and ready(), which a run that estimates does not need.
   void checkFiles();

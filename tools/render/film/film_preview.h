@@ -22,7 +22,7 @@ struct FilmPreview {
 // Spaces whole images so that making and showing them takes at most one per cent of the time.
 class PreviewPace {
  public:
-  explicit PreviewPace(double firstS) : nextS_(firstS) {}  // of nowS()
+  explicit PreviewPace(double firstS) : nextS_(firstS) {}  // by nowS()
   bool due() const { return nowS() >= nextS_; }
   template <typename Show>
   void show(const Show& show) {

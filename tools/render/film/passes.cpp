@@ -273,7 +273,7 @@ class Passes {
   std::vector<PixelPasses> known_;  // finished passes
   std::vector<double> variances_;   // relative
   double error_ = 0.0, startS_ = 0.0;
-  double passesS_ = 0.0;  // of the passes of this run, passesMade_ in number
+  double passesS_ = 0.0;  // time of the passes of this run
   uint64_t passesMade_ = 0;
   mutable double finishS_ = 0.0;
   std::string_view endedBy_;

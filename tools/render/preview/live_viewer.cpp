@@ -10,7 +10,7 @@ namespace bnvpl {
 
 namespace {
 
-constexpr int kSentSide = 64;  // of a block, in pixels
+constexpr int kSentSide = 64;  // side of a block, in pixels
 constexpr std::chrono::seconds kRetryEvery{1};
 constexpr double kFinishS = 10.0;
 // Rest after each block, so that sending takes one per cent of a thread's time.

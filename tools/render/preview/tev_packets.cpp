@@ -10,7 +10,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "packets are little-endian");
 
-enum class Type : uint8_t { Close = 2, Create = 4, Update = 6 };  // of update, the third version
+enum class Type : uint8_t { Close = 2, Create = 4, Update = 6 };  // update is its third version
 
 class Packet {
  public:
