@@ -128,6 +128,7 @@ def view_entry(context: Context, view: View, folder: Path) -> dict[str, Any]:
         "title": f"{view.scene.title}, {view.title}",
         "note": view.file,
         "reference": "reference",
+        "first": shown.get("first"),
         "layers": [{"id": key, "title": title} for key, title in LAYERS.items()],
         "images": [],
         "pictures": [],

@@ -46,8 +46,8 @@ def page_html(report: dict[str, Any]) -> str:
     )
     body = [
         header_html(report),
-        "".join(table_html(t, places) for t in report["tables"]),
         scenes and f'<div class="scenes">{scenes}</div>',
+        "".join(table_html(t, places) for t in report["tables"]),
         plots_html(report["plots"]),
         provenance_html(report["provenance"]),
         # In a script element, "</" would end it and "<!--" would begin a comment.
@@ -97,8 +97,8 @@ def series_colours(colours: tuple[str, ...]) -> str:
 
 
 def header_html(report: dict[str, Any]) -> str:
-    links = [(f"table-{t['id']}", t["title"]) for t in report["tables"]]
-    links += [(f"scene-{s['id']}", s["title"]) for s in report["scenes"]]
+    links = [(f"scene-{s['id']}", s["title"]) for s in report["scenes"]]
+    links += [(f"table-{t['id']}", t["title"]) for t in report["tables"]]
     links += [("plots", "Plots")] if report["plots"] else []
     links += [("provenance", "Provenance")] if report["provenance"] else []
     items = "".join(f'<li><a href="#{at}">{escape(text)}</a></li>' for at, text in links)
@@ -157,6 +157,7 @@ def view_html(
         {
             "title": f"{scene['title']}, {view['title']}",
             "reference": view["reference"],
+            "first": view["first"],
             "exposure": view["exposure"],
             "width": size[0],
             "height": size[1],

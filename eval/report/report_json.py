@@ -239,12 +239,18 @@ def view(node: Node) -> dict[str, Any]:
         raise node.child("reference").fail(
             f"no image has the id '{reference}'", "name one of 'images', or null"
         )
+    first = node.get("first", str, "the id of an image")
+    if first is not None and first not in [i["id"] for i in images]:
+        raise node.child("first").fail(
+            f"no image has the id '{first}'", "name one of 'images', or leave it out"
+        )
     exposure = node.get("exposure", (int, float), "a number of stops (EV)")
     return {
         "id": identity(node),
         "title": node.text("title"),
         "note": node.text("note", ""),
         "reference": reference,
+        "first": first,
         "exposure": exposure,
         "layers": layers,
         "images": images,

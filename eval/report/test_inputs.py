@@ -206,6 +206,10 @@ class InputTest(unittest.TestCase):
                 f"{view}.reference: no image has the id 'x'",
             ),
             (
+                lambda r: r["scenes"][0]["views"][0].update(first="x"),
+                f"{view}.first: no image has the id 'x'",
+            ),
+            (
                 lambda r: r["scenes"][0]["views"][0]["images"][1]["files"].update(direct="a.exr"),
                 f"{view}.images[1].files.direct: no layer has the id 'direct'",
             ),

@@ -121,7 +121,7 @@ def views() -> list[dict[str, Any]]:
             {"id": "tall", "label": "Tall", "file": "tall.png"},
         ],
     }
-    second = {**main, "id": "second", "title": "Second view", "pictures": []}
+    second = {**main, "id": "second", "title": "Second view", "first": "b", "pictures": []}
     del second["exposure"]
     return [main, second]
 

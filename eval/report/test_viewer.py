@@ -86,6 +86,14 @@ class ViewerTest(PageCase):
         self.viewer = self.reach(1)  # gives no exposure: automatic
         self.assertEqual(self.colour(6.5, 2.5), to_srgb8(reference, auto))
 
+    def test_the_image_that_is_shown_first(self) -> None:
+        def chosen() -> str:
+            return str(self.one('input[aria-label^="A: "]:checked').get_attribute("aria-label"))
+
+        self.assertEqual(chosen(), "A: Image a")  # the first that is not the reference
+        self.viewer = self.reach(1)
+        self.assertEqual(chosen(), "A: Image b")
+
     def test_layers(self) -> None:
         full = images()["reference-full"]
         self.keys("l", "f")

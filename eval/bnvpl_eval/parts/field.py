@@ -19,6 +19,7 @@ from ..tables import column, table
 from .convergence import series
 
 NONE = "none"
+DEFAULT_GATHER = "tilecuts"  # the default of vpl-render, which a viewer shows first
 EQUAL_VPLS, EQUAL_TIME = "equal VPLs", "equal time"
 MAX_SPP = 1024  # at equal time
 REFUSED = 2  # exit code of vpl-render
@@ -154,7 +155,12 @@ def add_pictures(context: Context, view: View, rows: list[dict[str, Any]]) -> No
         row["picture"] = {"scene": view.scene.id, "view": view.id, "image": identity(row)}
         label = f"{row['gather']}, {row['compensate']}"
         shown.append({"id": identity(row), "label": label, "file": row["images"][0]})
-    context.pictures[view.name] = {"images": shown, "overlays": []}
+    default = [identity(row) for row in rows if row["gather"] == DEFAULT_GATHER]
+    context.pictures[view.name] = {
+        "images": shown,
+        "overlays": [],
+        "first": default[-1] if default else None,
+    }
 
 
 def add_plots(context: Context, view: View, found: dict[str, list[dict[str, Any]]]) -> None:

@@ -5,7 +5,8 @@ class Viewer {
     Object.assign(this, {host, view, exponents, ready: new Map(), painted: [null, null]});
     this.items = [...view.images, ...view.pictures];
     this.reference = view.images.findIndex((i) => i.id === view.reference);
-    const a = Math.max(0, view.images.findIndex((_, i) => i !== this.reference));
+    const a = Math.max(0, view.images.findIndex(
+        (image, i) => (view.first === null ? i !== this.reference : image.id === view.first)));
     const b = this.reference >= 0 ? this.reference : Math.min(1, this.items.length - 1);
     this.state = {layer: view.layers[0].id, a, b, mode: "split", map: "image",
                   ev: view.exposure ?? 0,
