@@ -70,5 +70,23 @@ TEST_F(Combinations, EveryGatherInPassesAndCrops) {
   }
 }
 
+TEST(LayersOfGathers, ALayerOfAnotherGatherNamesThatGather) {
+  for (const GatherMethod* gather : gatherMethods()) {
+    for (const Counter& counter : gather->counters) {
+      const Given layer{{"layers", std::string(counter.name)}};
+      EXPECT_NO_THROW(
+          layersOf(resolveRender(with(layer, {{"gather", std::string(gather->name)}}))));
+      try {
+        layersOf(resolveRender(with(layer, {{"gather", "lightcuts"}})));
+        ADD_FAILURE() << counter.name;
+      } catch (const UsageError& error) {
+        EXPECT_NE(std::string(error.what()).find("--gather " + std::string(gather->name)),
+                  std::string::npos)
+            << error.what();
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace bnvpl::test

@@ -45,6 +45,20 @@ std::span<const Layer> counterLayersOf(const Values& options) {
   return own == all.end() ? std::span<const Layer>() : std::span<const Layer>(own->second);
 }
 
+// Throws UsageError for a counter of another gather than that of the run.
+void requireOwnCounters(const std::string& layers, std::span<const Layer> own) {
+  const std::string list = "," + layers + ",";
+  for (const GatherMethod* m : gatherMethods()) {
+    for (const Counter& c : m->counters) {
+      const std::string name(c.name);
+      if (list.find("," + name + ",") == std::string::npos) continue;
+      if (std::ranges::any_of(own, [&](const Layer& l) { return l.name == c.name; })) continue;
+      throw UsageError("--layers: '" + name + "' is counted by --gather " + std::string(m->name) +
+                       " alone; choose that gather, or leave the layer out");
+    }
+  }
+}
+
 std::span<const Option> stageOptions() {
   static const std::string layersHelp =
       "extra channels of the image, or all" + layerList() + counterList();
@@ -209,6 +223,7 @@ const IntegratorMethod& integratorOf(const Values& options) {
 }
 
 std::vector<const Layer*> layersOf(const Values& options) {
+  requireOwnCounters(options[kLayersKey], counterLayersOf(options));
   return parseLayers(options[kLayersKey],
                      integratorOf(options).gathers && onlyOf(options) != Only::Direct,
                      budgetOf(options).has_value(), options[kOnlyOption], counterLayersOf(options));
