@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <map>
 #include <numbers>
 
 #include "scene/surface_area.h"
 #include "tools/render/compensate/compensate.h"
+#include "tools/render/counter_layers.h"
 #include "tools/render/film/tiles.h"
 #include "tools/render/gather/gather.h"
 #include "tools/render/image_camera.h"
@@ -17,47 +17,6 @@
 namespace bnvpl {
 
 namespace {
-
-// Lines of --help for the layers of the gathers' own counters.
-std::string counterList() {
-  std::string lines;
-  for (const GatherMethod* m : gatherMethods()) {
-    for (const Counter& c : m->counters) {
-      lines += "\n  " + std::string(c.name) + ": " + std::string(c.help) + ", with --gather " +
-               std::string(m->name);
-    }
-  }
-  return lines;
-}
-
-// Layers of the counters of the gather of a run.
-std::span<const Layer> counterLayersOf(const Values& options) {
-  static const auto all = [] {
-    std::map<std::string_view, std::vector<Layer>> layers;
-    for (const GatherMethod* m : gatherMethods()) {
-      for (size_t k = 0; k < m->counters.size(); ++k)
-        layers[m->name].push_back(counterLayer(m->counters[k], k));
-    }
-    return layers;
-  }();
-  if (!options.has(kGatherSlot)) return {};
-  const auto own = all.find(options[kGatherSlot]);
-  return own == all.end() ? std::span<const Layer>() : std::span<const Layer>(own->second);
-}
-
-// Throws UsageError for a counter of another gather than that of the run.
-void requireOwnCounters(const std::string& layers, std::span<const Layer> own) {
-  const std::string list = "," + layers + ",";
-  for (const GatherMethod* m : gatherMethods()) {
-    for (const Counter& c : m->counters) {
-      const std::string name(c.name);
-      if (list.find("," + name + ",") == std::string::npos) continue;
-      if (std::ranges::any_of(own, [&](const Layer& l) { return l.name == c.name; })) continue;
-      throw UsageError("--layers: '" + name + "' is counted by --gather " + std::string(m->name) +
-                       " alone; choose that gather, or leave the layer out");
-    }
-  }
-}
 
 std::span<const Option> stageOptions() {
   static const std::string layersHelp =

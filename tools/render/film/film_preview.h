@@ -5,6 +5,7 @@
 #include <functional>
 #include <span>
 
+#include "core/vec3.h"
 #include "formats/image/image.h"
 #include "tools/common/run/clock.h"
 

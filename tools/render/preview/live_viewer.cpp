@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include "tools/common/run/clock.h"
 #include "tools/render/preview/tev_packets.h"

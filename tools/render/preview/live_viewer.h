@@ -13,6 +13,7 @@
 #include <thread>
 #include <vector>
 
+#include "core/vec3.h"
 #include "formats/image/image.h"
 #include "tools/render/preview/viewer_connection.h"
 
