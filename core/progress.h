@@ -27,8 +27,8 @@ class ProgressFn {
   ProgressFn() = default;
   template <typename Fn>
   requires(std::constructible_from<Count, Fn> && !std::same_as<std::remove_cvref_t<Fn>, ProgressFn>)
-      ProgressFn(Fn count, Begin begin = {}, End end = {},
-                 Tell tell = {})  // NOLINT: any callable is one
+      ProgressFn(Fn count, Begin begin = {}, End end = {},  // NOLINT: any callable is one
+                 Tell tell = {})
       : count_(std::move(count)),
         begin_(std::move(begin)),
         end_(std::move(end)),

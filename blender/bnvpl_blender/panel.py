@@ -34,16 +34,21 @@ class BNVPL_OT_open_folder(bpy.types.Operator):
         return bpy.ops.wm.path_open(filepath=str(kept_folder(context.scene)))
 
 
-class BNVPL_PT_render(bpy.types.Panel):
-    bl_label = "bnvpl"
+class EnginePanel:
+    """What the panels of this engine share."""
+
     bl_space_type = "PROPERTIES"
     bl_region_type = "WINDOW"
-    bl_context = "render"
     COMPAT_ENGINES = {ENGINE}
 
     @classmethod
     def poll(cls, context):
         return context.engine in cls.COMPAT_ENGINES
+
+
+class BNVPL_PT_render(EnginePanel, bpy.types.Panel):
+    bl_label = "bnvpl"
+    bl_context = "render"
 
     def draw(self, context):
         layout, own = self.layout, context.scene.bnvpl
@@ -57,16 +62,9 @@ class BNVPL_PT_render(bpy.types.Panel):
             layout.operator(BNVPL_OT_open_folder.bl_idname, icon="FILE_FOLDER")
 
 
-class BNVPL_PT_passes(bpy.types.Panel):
+class BNVPL_PT_passes(EnginePanel, bpy.types.Panel):
     bl_label = "Passes"
-    bl_space_type = "PROPERTIES"
-    bl_region_type = "WINDOW"
     bl_context = "view_layer"
-    COMPAT_ENGINES = {ENGINE}
-
-    @classmethod
-    def poll(cls, context):
-        return context.engine in cls.COMPAT_ENGINES
 
     def draw(self, context):
         layout = self.layout

@@ -108,7 +108,7 @@ void addImages(OutputSet& files, const ImagePaths& paths, const Image& image, co
   summary.add("exposure_ev", ev, line + paths.png.string());
 }
 
-void writePng(const fs::path& png, const Image& image, const Values& options) {
+void renewPreview(const fs::path& png, const Image& image, const Values& options) {
   AtomicFile file(png);
   writePreview(file, image, exposureOf(image, options[kExposureOption]));
   file.commit();

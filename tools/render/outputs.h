@@ -17,8 +17,8 @@ double bytesPerPixelOf(const Values& options);
 // Adds the image and its preview at --exposure to the files, and both to the summary.
 void addImages(OutputSet& files, const ImagePaths& paths, const Image& image, const Values& options,
                Summary& summary);
-// Replaces the preview.
-void writePng(const fs::path& png, const Image& image, const Values& options);
+// Replaces the preview by one of the image so far.
+void renewPreview(const fs::path& png, const Image& image, const Values& options);
 ExrPixelType pixelTypeOf(const Values& options);
 
 // Options that must not change when a run is resumed. The number of passes may.

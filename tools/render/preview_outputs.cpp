@@ -18,7 +18,7 @@ FilmPreview Previews::begin(const ImagePaths& paths, const Values& options, cons
   if (!viewer_ && png.empty()) return preview;
   preview.image = [this, png, &options](const Image& image) {
     if (viewer_) viewer_->show(image);
-    if (!png.empty()) writePng(png, image, options);
+    if (!png.empty()) renewPreview(png, image, options);
   };
   return preview;
 }

@@ -168,10 +168,8 @@ std::optional<Budget> budgetOf(const Values& options) {
                      std::to_string(kMinPasses * passSpp) + ", for " + std::to_string(kMinPasses) +
                      " passes of " + std::to_string(passSpp));
   }
-  if (options.has(kPassSppOption) || !time)
-    budget.passSpp = static_cast<uint32_t>(passSpp);
-  else
-    budget.passSpp = 0;
+  const bool byTrial = time && !options.has(kPassSppOption);
+  budget.passSpp = byTrial ? 0 : static_cast<uint32_t>(passSpp);
   if (passes) budget.passes = options[kPassesOption];
   budget.adaptive = options[kAdaptiveOption];
   return budget;

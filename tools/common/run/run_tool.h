@@ -90,6 +90,7 @@ std::string extendProvenance(const std::string& earlier, const Json& record);
 class Summary {
  public:
   explicit Summary(std::string tool);
+  double startS() const { return startS_; }  // by nowS(): when it was made
   // `text` is for people, `value` for the JSON file. Keys carry their units: "time_s".
   void add(const std::string& key, Json value, const std::string& text = "");
   // Adds "non_finite_samples", the number of samples that became NaN or infinite and count as zero,

@@ -17,7 +17,6 @@
 #include "core/progress.h"
 #include "tools/common/files/run_files.h"
 #include "tools/common/run/checkpoint.h"
-#include "tools/common/run/clock.h"
 #include "tools/common/stage/cost.h"
 #include "tools/common/stage/scene_options.h"
 #include "tools/common/stage/shard.h"
@@ -65,7 +64,7 @@ class StageRun {
  public:
   StageRun(const std::string& name, const StageRequest& request, const ToolOptions& tool);
 
-  double startS() const { return startS_; }  // by nowS(), before any file is read
+  double startS() const { return summary_.startS(); }  // before any file is read
   bool estimating() const { return request_.cost.estimate; }
   // RunFiles::check() and ready(), which a run that estimates does not need.
   void checkFiles();
@@ -81,7 +80,6 @@ class StageRun {
  private:
   const StageRequest& request_;
   const ToolOptions& tool_;
-  const double startS_ = nowS();
   Summary summary_;  // begins to count time here
 };
 

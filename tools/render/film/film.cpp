@@ -113,14 +113,11 @@ Image develop(const Film& size, const FilmOptions& options, FilmState& state, Fi
 // Shows the pixels of a tile that have `samples` samples.
 void showTile(const FilmState& film, const Tile& tile, uint32_t samples, Only only,
               const FilmPreview& preview) {
-  if (!preview.tile) return;
-  std::vector<Vec3> radiance(tile.pixels());
-  for (uint32_t p = 0; p < tile.pixels(); ++p)
-    radiance[p] = meanRadiance(film.pixels[film.tiles.pixelIndex(tile, p)], only, samples);
-  preview.tile(boxOf(tile), radiance);
+  if (preview.tile)
+    preview.tile(boxOf(tile), meanRadiance(film.tiles, tile, film.pixels, only, samples));
 }
 
-// Shows the film after `photons` of `all` photons. Samples are complete.
+// Shows the film after the share `done` of the photons. Samples are complete.
 void showPhotons(const Film& size, const FilmState& film, const FilmOptions& options, double done,
                  const FilmPreview& preview) {
   std::vector<Vec3> radiance(film.pixels.size());

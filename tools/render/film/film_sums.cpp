@@ -22,6 +22,14 @@ Image imageOf(std::span<const Vec3> radiance, const Film& film) {
   return image;
 }
 
+std::vector<Vec3> meanRadiance(const Tiles& tiles, const Tile& tile,
+                               std::span<const PixelSums> sums, Only only, double samples) {
+  std::vector<Vec3> radiance(tile.pixels());
+  for (uint32_t p = 0; p < tile.pixels(); ++p)
+    radiance[p] = meanRadiance(sums[tiles.pixelIndex(tile, p)], only, samples);
+  return radiance;
+}
+
 void addRadiance(const FilmSums& film, Only only, Image& image) {
   for (size_t c = 0; c < 3; ++c) {
     std::vector<float>& data = image.add(std::string(1, "RGB"[c]));

@@ -7,6 +7,7 @@
 #include "formats/image/image.h"
 #include "tools/render/film/film.h"
 #include "tools/render/film/film_groups.h"
+#include "tools/render/film/tiles.h"
 
 namespace bnvpl {
 
@@ -27,6 +28,10 @@ struct FilmSums {
 // An image of the film's size without channels, and one of R, G, B.
 Image blankImage(const Film& film);
 Image imageOf(std::span<const Vec3> radiance, const Film& film);
+
+// Mean radiance of the pixels of a tile, row by row, of which `sums` have `samples` samples.
+std::vector<Vec3> meanRadiance(const Tiles& tiles, const Tile& tile,
+                               std::span<const PixelSums> sums, Only only, double samples);
 
 // Adds R, G, B of the light that `only` shows.
 void addRadiance(const FilmSums& film, Only only, Image& image);

@@ -64,9 +64,9 @@ Image PartialFilm::image() const {
   return imageOf(shown, film_);
 }
 
-SpreadOrder::SpreadOrder(size_t n) : n_(n), stride_(static_cast<size_t>(0.618 * double(n))) {
-  while (std::gcd(std::max<size_t>(stride_, 1), n_) != 1) ++stride_;
-  stride_ = std::max<size_t>(stride_, 1);
+SpreadOrder::SpreadOrder(size_t n)
+    : n_(n), stride_(std::max<size_t>(1, static_cast<size_t>(0.618 * double(n)))) {
+  while (std::gcd(stride_, n_) != 1) ++stride_;
 }
 
 }  // namespace bnvpl

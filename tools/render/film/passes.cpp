@@ -126,7 +126,7 @@ class Passes {
     return sppThatFits(scene_, integrator_, options_, leftS / kWantedPasses);
   }
   uint64_t maxPasses() const { return std::min(budget_.passes, budget_.spp / passSpp()); }
-  double passS() const { return passesS_ / double(std::max<uint64_t>(1, passesMade_)); }
+  double passS() const { return state_.at.passesS / double(state_.at.pass); }  // after a pass
   // Time that the image takes once the passes are made: twice that of an image to look at, as it
   // has other layers and is written.
   double finishS() const {
@@ -159,26 +159,27 @@ class Passes {
 
   void makePass(const ProgressFn& progress, const Resume& resume, const FilmPreview& preview,
                 PreviewPace& pace) {
-    const double startS = nowS();
+    const double passesStartS = nowS() - state_.at.passesS;
     const auto state = [&] {
       state_.at.spentS = nowS() - startS_;
+      state_.at.passesS = nowS() - passesStartS;
       return state_.encode();
     };
     // Photons come after the tiles, whose light alone would mislead.
     const bool showTiles = state_.at.pass == 0 && !integrator_.tracePhotons;
-    PartialFilm partial(showTiles && preview.image ? scene_.film : Film{});
+    std::optional<PartialFilm> partial;
+    if (showTiles && preview.image) partial.emplace(scene_.film);
     std::mutex showing;
     const auto show = [&](size_t index) {
       if (!showTiles || (!preview.tile && !preview.image)) return;
       const Tile tile = tiles_.at(index);
-      std::vector<Vec3> radiance(tile.pixels());
-      for (uint32_t p = 0; p < tile.pixels(); ++p)
-        radiance[p] = meanRadiance(state_.sums[tiles_.pixelIndex(tile, p)], options_.only, 1.0);
+      const std::vector<Vec3> radiance =
+          meanRadiance(tiles_, tile, state_.sums, options_.only, 1.0);
       if (preview.tile) preview.tile(boxOf(tile), radiance);
-      if (!preview.image) return;
-      partial.add(index, radiance);
+      if (!partial) return;
+      partial->add(index, radiance);
       const std::unique_lock lock(showing, std::try_to_lock);
-      if (lock.owns_lock() && pace.due()) pace.show([&] { preview.image(partial.image()); });
+      if (lock.owns_lock() && pace.due()) pace.show([&] { preview.image(partial->image()); });
     };
     forUnitsLeft(
         state_.done, resume,
@@ -189,8 +190,7 @@ class Passes {
         },
         state, SpreadOrder(tiles_.count()));
     if (integrator_.tracePhotons) addPhotons(progress, resume, state);
-    passesS_ += nowS() - startS;
-    ++passesMade_;
+    state_.at.passesS = nowS() - passesStartS;
   }
 
   template <typename State>
@@ -273,8 +273,6 @@ class Passes {
   std::vector<PixelPasses> known_;  // finished passes
   std::vector<double> variances_;   // relative
   double error_ = 0.0, startS_ = 0.0;
-  double passesS_ = 0.0;  // time of the passes of this run
-  uint64_t passesMade_ = 0;
   mutable double finishS_ = 0.0;
   std::string_view endedBy_;
 };

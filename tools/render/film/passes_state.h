@@ -19,7 +19,7 @@ using Rgb = std::array<double, 3>;
 struct PassesState {
   struct Progress {
     uint64_t pass = 0;  // index of the current pass
-    double spentS = 0.0;
+    double spentS = 0.0, passesS = 0.0;  // since the start, and of the passes
     uint64_t passSpp = 0;  // 0: not chosen yet
     SplatProgress splats;
   };

@@ -5,6 +5,15 @@
 
 namespace bnvpl {
 
+// Adds the contribution of VPL i, times `weight`. `groups` receives the radiance by light group.
+inline void addTransfer(const VplLights& vpls, size_t i, const VplTransfer& c, float weight,
+                        const GroupSink& groups, Gathered& out) {
+  const Vec3 light = c.transfer * vpls.intensity[i] * weight;
+  out.radiance += light;
+  out.clamped += light * c.clampLoss;
+  if (groups) vpls.addByGroup(i, c.transfer * weight, groups);
+}
+
 // Borrows all three. `groups` receives the radiance by light group.
 class ShadowTest {
  public:
@@ -28,10 +37,7 @@ class ShadowTest {
     if (!unoccludedTransfer(vpls_, i, bsdf_, c)) return;
     ++out.shadowRays;
     if (rays_.occluded(from_, vpls_.position[i])) return;
-    const Vec3 light = c.transfer * vpls_.intensity[i] * weight;
-    out.radiance += light;
-    out.clamped += light * c.clampLoss;
-    if (groups_) vpls_.addByGroup(i, c.transfer * weight, groups_);
+    addTransfer(vpls_, i, c, weight, groups_, out);
   }
 
  private:

@@ -9,6 +9,7 @@
 
 #include "tools/render/gather/matrix_completion/column_basis.h"
 #include "tools/render/gather/matrix_slices.h"
+#include "tools/render/gather/shadow_test.h"
 
 namespace bnvpl::methods::gather::matrix_completion {
 
@@ -119,12 +120,7 @@ class SliceMatrix {
   void addEntry(uint32_t row, const VplDraw& draw, double visibility) {
     const float weight = draw.weight * static_cast<float>(std::clamp(visibility, 0.0, 1.0));
     const uint32_t i = receivers_[row];
-    const VplTransfer& t = transfer_[row];
-    const Vec3 light = t.transfer * in_.vpls.intensity[draw.index] * weight;
-    out_[i].radiance += light;
-    out_[i].clamped += light * t.clampLoss;
-    if (const GroupSink groups = tile_.groupsOf(i))
-      in_.vpls.addByGroup(draw.index, t.transfer * weight, groups);
+    addTransfer(in_.vpls, draw.index, transfer_[row], weight, tile_.groupsOf(i), out_[i]);
   }
 
   const GatherInputs& in_;
