@@ -82,9 +82,10 @@ class Preview(unittest.TestCase):
         self.addCleanup(viewer.socket.close)
         return viewer
 
-    def render(self, port: int, *more: str, integrator: str = "path") -> str:
+    def render(self, port: int, *more: str, integrator: str = "path", address: str = "") -> str:
         command = [BIN / "vpl-render", SCENE, "-o", self.image, "--integrator", integrator]
-        command += ["--size", f"{WIDTH}x{HEIGHT}", "--preview", f"127.0.0.1:{port}", *more]
+        command += ["--size", f"{WIDTH}x{HEIGHT}"]
+        command += ["--preview", address or f"127.0.0.1:{port}", *more]
         words = [str(word) for word in command]
         return subprocess.run(words, check=True, text=True, capture_output=True).stdout
 
@@ -150,6 +151,10 @@ class Preview(unittest.TestCase):
             port = closed.getsockname()[1]
         self.assertIn("no viewer was at", self.render(port, "--spp", "1"))
         self.assertTrue(self.image.exists())
+
+    def test_addresses_of_version_6_keep_their_brackets(self) -> None:
+        out = self.render(0, "--spp", "1", address="[::1]:9")
+        self.assertIn("no viewer was at [::1]:9;", out)
 
     def test_addresses(self) -> None:
         for address in ("nohost.invalid:1", "localhost:0", "localhost:99999", "a:b", ":1", "[::1"):

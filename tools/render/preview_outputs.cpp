@@ -27,7 +27,7 @@ void Previews::finish(const Image& image, Summary& summary) {
   if (!viewer_) return;
   viewer_->show(image);
   const uint64_t blocks = viewer_->finish();
-  const std::string at = address_->host + ":" + std::to_string(address_->port);
+  const std::string at = addressText(*address_);
   summary.add("preview_blocks", blocks,
               blocks > 0
                   ? "shown by the viewer at " + at + " in " + std::to_string(blocks) + " updates"

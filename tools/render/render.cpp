@@ -143,10 +143,19 @@ const StageSpec& renderSpec() {
   return spec;
 }
 
+namespace {
+
+bool byPasses(const Values& options) {
+  return options.has(kTimeOption) || options.has(kTargetErrorOption) || options.has(kPassesOption);
+}
+
+}  // namespace
+
 Values resolveRender(const Given& given) {
   Values options = resolve(renderSpec(), withPixelSumOptions(withDenoiserOptions(given)));
   const bool limited = textGiven(given, kSppOption.name) != nullptr;
-  if (budgetOf(options) && !limited) options.set(kSppOption, static_cast<uint64_t>(kUnlimitedSpp));
+  if (byPasses(options) && !limited) options.set(kSppOption, static_cast<uint64_t>(kUnlimitedSpp));
+  budgetOf(options);  // its errors belong to the command line
   return options;
 }
 
@@ -155,12 +164,11 @@ uint64_t passSppOf(const Values& options) {
 }
 
 std::optional<Budget> budgetOf(const Values& options) {
-  const bool time = options.has(kTimeOption), error = options.has(kTargetErrorOption),
-             passes = options.has(kPassesOption);
-  if (!time && !error && !passes) return {};
+  if (!byPasses(options)) return {};
+  const bool time = options.has(kTimeOption);
   Budget budget;
   if (time) budget.timeS = options[kTimeOption];
-  if (error) budget.error = options[kTargetErrorOption];
+  if (options.has(kTargetErrorOption)) budget.error = options[kTargetErrorOption];
   budget.spp = options[kSppOption];
   const uint64_t passSpp = passSppOf(options);
   if (budget.spp < kMinPasses * passSpp) {
@@ -170,7 +178,7 @@ std::optional<Budget> budgetOf(const Values& options) {
   }
   const bool byTrial = time && !options.has(kPassSppOption);
   budget.passSpp = byTrial ? 0 : static_cast<uint32_t>(passSpp);
-  if (passes) budget.passes = options[kPassesOption];
+  if (options.has(kPassesOption)) budget.passes = options[kPassesOption];
   budget.adaptive = options[kAdaptiveOption];
   return budget;
 }

@@ -32,6 +32,11 @@ Addresses lookUp(const ViewerAddress& to) {
 
 }  // namespace
 
+std::string addressText(const ViewerAddress& a) {
+  const bool bracketed = a.host.find(':') != std::string::npos;
+  return (bracketed ? "[" + a.host + "]" : a.host) + ":" + std::to_string(a.port);
+}
+
 void addPreviewOption(CLI::App& cli, std::string& address) {
   cli.add_option("--preview", address, "show the image while it comes, in the viewer tev")
       ->type_name("HOST[:PORT]");

@@ -17,6 +17,8 @@ struct ViewerAddress {
   std::string host;
   uint16_t port;
 };
+// "localhost:14158", "[::1]:14158"
+std::string addressText(const ViewerAddress& address);
 void addPreviewOption(CLI::App& cli, std::string& address);
 // Throws UsageError for a text that is no address, or a host that has none.
 ViewerAddress parseViewerAddress(const std::string& text);
