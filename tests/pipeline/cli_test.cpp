@@ -214,9 +214,9 @@ TEST_F(Options, OptionsAreNoValues) {
   refused("vpl-inspect", "--stats --quiet info a.vpl", "--stats", "--quiet");
   EXPECT_TRUE(listing().empty());
   succeed("vpl-place", place + "--quiet -o " + c + " --stats=" + path("--quiet"));
-  const Outcome meant = shell("sh -c 'cd " + at("").string() +
-                              " && " BNVPL_BIN "/vpl-place " BNVPL_SOURCE
-                              "/scenes/test/one-bounce.toml -n 9 --quiet -o ./--seed'");
+  const Outcome meant = shell("sh -c 'cd \"" + at("").string() +
+                              "\" && \"" BNVPL_BIN "/vpl-place\" \"" BNVPL_SOURCE
+                              "/scenes/test/one-bounce.toml\" -n 9 --quiet -o ./--seed'");
   EXPECT_EQ(meant.code, kExitOk) << meant.err;
   EXPECT_EQ(listing(), (std::vector<std::string>{"--quiet", "--seed", "c.vpl"}));
 }

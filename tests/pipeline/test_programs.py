@@ -15,6 +15,7 @@ from typing import Any
 
 SOURCE = Path(__file__).resolve().parents[2]
 BIN = Path("build/release/bin")
+TAKE_TOOLS = ("generate_ninja.py", "slurm/submit.py")
 SMALL = ["CANDIDATES=2k", "VPLS=200", "PHOTONS=20k", "SPP=1", "RUN_FLAGS=--quiet"]
 
 
@@ -62,7 +63,8 @@ class Programs(unittest.TestCase):
         return sorted(str(path) for path in self.folder.rglob("*"))
 
     def script(self, name: str, *words: str) -> list[str]:
-        return [sys.executable, f"pipelines/{name}", *words]
+        tools = ["--bin", "bin"] if name in TAKE_TOOLS and "--bin" not in words else []
+        return [sys.executable, f"pipelines/{name}", *tools, *words]
 
     def farm(self, *words: str) -> list[str]:
         return [sys.executable, str(SOURCE / "eval/scaling/farm.py"), *words]

@@ -198,6 +198,20 @@ TEST(AdaptivePasses, GoWhereTheErrorIs) {
   for (const float n : *uniform.image.find("samples")) ASSERT_EQ(n, 24.0f * kPassSpp);
 }
 
+// However few samples a pass has, each pixel has one of them.
+TEST(AdaptivePasses, OfFewSamplesLeaveNoPixelOut) {
+  const Film film(64, 64);
+  const auto noisy = seen([](uint32_t p, float, float own) { return p < 8 ? 2.0f * own : 1.0f; });
+  for (const uint32_t spp : {1u, 2u, 3u}) {
+    Made m;
+    m.image = renderPasses(film.scene, noisy, {.layers = parseLayers("samples", true, true)},
+                           {.passes = 24, .passSpp = spp}, m.stats, m.passes);
+    EXPECT_NEAR(meanOf(m.image), 1.0, 0.02) << spp;
+    EXPECT_NEAR(double(m.stats.samples) / (64.0 * 64.0 * 24.0 * spp), 1.0, 0.03) << spp;
+    for (const float n : *m.image.find("samples")) ASSERT_GE(n, 24.0f) << spp;
+  }
+}
+
 // Camera samples and photons give the same bytes with any threads, and from every state that a
 // checkpoint may hold.
 TEST(Passes, SameBytesForAnyThreadsAndInterruptions) {

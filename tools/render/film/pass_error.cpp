@@ -82,7 +82,7 @@ std::vector<uint32_t> allocateSamples(const Tiles& tiles, std::span<const double
                                       std::span<const double> inverse, uint64_t passes,
                                       uint32_t spp, uint64_t key) {
   const std::vector<double> deviations = tileDeviations(tiles, variances, inverse, passes);
-  const double least = 0.25 * spp, most = 4.0 * spp;
+  const double least = std::max(1.0, 0.25 * spp), most = 4.0 * spp;
   double pixels = 0.0, largest = 0.0, smallest = INFINITY;
   for (size_t t = 0; t < deviations.size(); ++t) {
     pixels += tiles.at(t).pixels();

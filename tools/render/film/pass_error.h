@@ -21,8 +21,8 @@ double relativeError(std::span<const double> variances);
 
 // Samples per pixel of each tile in the next pass, proportional to the standard deviation of one of
 // its samples, which minimises the error of the image (Neyman 1934). They lie between a quarter of
-// and four times `spp`, and are `spp` on average over the film. `variances` has one entry per
-// pixel; `inverse` is the sum over passes of 1 / samples for each tile.
+// and four times `spp`, are at least 1, and `spp` on average over the film. `variances` has one
+// entry per pixel; `inverse` is the sum over passes of 1 / samples for each tile.
 std::vector<uint32_t> allocateSamples(const Tiles& tiles, std::span<const double> variances,
                                       std::span<const double> inverse, uint64_t passes,
                                       uint32_t spp, uint64_t key);
