@@ -30,7 +30,7 @@ class Context:
     tables: list[dict[str, Any]] = field(default_factory=list)  # tables of the report
     plots: list[dict[str, Any]] = field(default_factory=list)
     # The pictures are grouped by the view's name.
-    pictures: dict[str, dict[str, list[dict[str, Any]]]] = field(default_factory=dict)
+    pictures: dict[str, dict[str, Any]] = field(default_factory=dict)
 
     def views(self, only: str = "") -> list[View]:
         return [

@@ -34,6 +34,7 @@ RESULTS = output_guard.json_object(
     "the results of an evaluation", "provenance", "settings", "results", "runs"
 )
 REPORT = output_guard.json_object("the report of an evaluation", "title", "provenance", "scenes")
+CONTRIBUTIONS = output_guard.json_object("a list of contributions", "format", "rows", "pixels")
 FILES = {
     "results.json": RESULTS,
     "results.csv": output_guard.CSV,
@@ -129,10 +130,15 @@ def view_entry(context: Context, view: View, folder: Path) -> dict[str, Any]:
         "note": view.file,
         "reference": "reference",
         "first": shown.get("first"),
+        "contributions": None,
         "layers": [{"id": key, "title": title} for key, title in LAYERS.items()],
         "images": [],
         "pictures": [],
     }
+    if listed := shown.get("contributions"):
+        target = place / "contributions.json"
+        save(target, CONTRIBUTIONS, functools.partial(shutil.copyfile, listed))
+        entry["contributions"] = str(target.relative_to(folder))
     for image in shown["images"]:
         files = {}
         for layer in LAYERS:

@@ -158,6 +158,14 @@ def image(runner: Runner, view: View, c: Configuration, seed: int) -> tuple[Path
     return run["image.exr"], runs + [run]
 
 
+def contributions(runner: Runner, view: View, c: Configuration, seed: int) -> Path:
+    """The VPLs of the image that light each pixel most."""
+    vpls, _ = lit(runner, view, c, seed)
+    words = ["contributions", "{lit}", "--scene", "{scene}", "-o", "@contributions.json", "--quiet"]
+    inputs = {"lit": vpls, "scene": ROOT / view.file}
+    return runner.run("vpl-inspect", words, inputs, ["contributions.json"])["contributions.json"]
+
+
 def traced(
     runner: Runner, view: View, film: str, spp: int, seed: int, integrator: str = "path"
 ) -> tuple[Path, list[Run]]:

@@ -9,6 +9,7 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
+import contributions
 from hdr_image import HdrStore, read_png
 from html_table import Places, number_text, table_html
 from plot_figure import DARK, LIGHT, page_svg, slope_text
@@ -25,6 +26,7 @@ SCRIPTS = (
     "panel.js",
     "viewer.js",
     "table.js",
+    "explorer.js",
     "main.js",
 )
 
@@ -153,9 +155,11 @@ def view_html(
                     "element": at,
                 }
             )
+    explorer, sizes = explorer_html(scene, view, index)
     views.append(
         {
             "title": f"{scene['title']}, {view['title']}",
+            "contributions": sizes,
             "reference": view["reference"],
             "first": view["first"],
             "exposure": view["exposure"],
@@ -173,8 +177,24 @@ def view_html(
         f"<h3>{escape(view['title'])}</h3>{note}"
         f'<div class="viewer" data-view="{index}" role="group" '
         f'aria-label="{escape(scene["title"])}, {escape(view["title"])}: image comparison">'
-        f"<noscript>The viewer needs JavaScript.</noscript></div>{grid}</section>"
+        f"<noscript>The viewer needs JavaScript.</noscript></div>{explorer}{grid}</section>"
     )
+
+
+def explorer_html(
+    scene: dict[str, Any], view: dict[str, Any], index: int
+) -> tuple[str, dict[str, Any] | None]:
+    """The place of the explorer of VPLs with its data, and their sizes; nothing without a list."""
+    if not view["contributions"]:
+        return "", None
+    sizes, data = contributions.pack(view["contributions"])
+    at = f"contributions-{index}"
+    label = escape(f"{scene['title']}, {view['title']}: which VPLs light what")
+    html = (
+        f'<h4>Which VPLs light what</h4><div class="explorer" data-view="{index}" role="group" '
+        f'aria-label="{label}"></div><script type="text/plain" id="{at}">{data}</script>'
+    )
+    return html, {**sizes, "element": at}
 
 
 def pack_images(

@@ -245,6 +245,7 @@ def view(node: Node) -> dict[str, Any]:
             f"no image has the id '{first}'", "name one of 'images', or leave it out"
         )
     exposure = node.get("exposure", (int, float), "a number of stops (EV)")
+    contributions = node.get("contributions", str, "the name of a file")
     return {
         "id": identity(node),
         "title": node.text("title"),
@@ -252,6 +253,7 @@ def view(node: Node) -> dict[str, Any]:
         "reference": reference,
         "first": first,
         "exposure": exposure,
+        "contributions": contributions and node.source.parent / contributions,
         "layers": layers,
         "images": images,
         "pictures": pictures,

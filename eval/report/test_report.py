@@ -6,6 +6,7 @@ Needs chromium, chromium-driver, python3-selenium, python3-openimageio, python3-
 
 import unittest
 
+from test_explorer import ExplorerTest, ListTest  # noqa: F401
 from test_inputs import InputTest  # noqa: F401
 from test_page import PageTest  # noqa: F401
 from test_table import TableTest  # noqa: F401

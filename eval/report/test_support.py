@@ -109,6 +109,7 @@ def views() -> list[dict[str, Any]]:
         "note": "8x6 pixels",
         "reference": "reference",
         "exposure": 0,
+        "contributions": "contributions.json",
         "layers": layers,
         "images": [
             image("reference", full={"file": "layers.exr", "layer": "full"}),
@@ -122,7 +123,7 @@ def views() -> list[dict[str, Any]]:
         ],
     }
     second = {**main, "id": "second", "title": "Second view", "first": "b", "pictures": []}
-    del second["exposure"]
+    del second["exposure"], second["contributions"]
     return [main, second]
 
 
@@ -223,6 +224,35 @@ def report() -> dict[str, Any]:
     }
 
 
+def contributions() -> dict[str, Any]:
+    """Three VPLs on a film of 4x3 pixels: in sight, behind a surface, and outside the film.
+
+    The first lights the left column alone, the second all of it, the third all but the last pixel.
+    """
+    rows, shares = [], []
+    for i in range(12):
+        listed = [(1, 0.75 if i % 4 else 0.25)] + ([(2, 0.125)] if i < 11 else [])
+        listed += [] if i % 4 else [(0, 0.5)]
+        listed.sort(key=lambda entry: -entry[1])
+        rows.append([row for row, _ in listed])
+        shares.append([share for _, share in listed])
+    return {
+        "format": "bnvpl.contributions",
+        "version": 1,
+        "scene": "0123456789abcdef",
+        "clamp_r_max": 2.0,
+        "width": 4,
+        "height": 3,
+        "rows": {
+            "x": [0.25, 0.75, None],
+            "y": [0.5, 0.5, None],
+            "in_sight": [True, False, False],
+            "radiance": [0.125, 0.75, 0.125],
+        },
+        "pixels": {"radiance": [2.0] * 12, "rows": rows, "shares": shares},
+    }
+
+
 def write_report(folder: Path, change: dict[str, Any] | None = None) -> Path:
     for name, pixels in images().items():
         write_exr(folder / f"{name}.exr", pixels)
@@ -234,6 +264,7 @@ def write_report(folder: Path, change: dict[str, Any] | None = None) -> Path:
     )
     write_png(folder / "dots.png", WIDTH // 2, HEIGHT // 2, (10, 200, 30))
     write_png(folder / "tall.png", WIDTH, HEIGHT + 26, (1, 2, 3))
+    (folder / "contributions.json").write_text(json.dumps(contributions()), encoding="utf-8")
     path = folder / "report.json"
     path.write_text(json.dumps({**report(), **(change or {})}), encoding="utf-8")
     return path

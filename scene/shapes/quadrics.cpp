@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "scene/affine.h"
+
 namespace bnvpl {
 
 namespace {

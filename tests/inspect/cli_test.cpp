@@ -105,6 +105,55 @@ TEST_F(Cli, PlotsWithTheSameBytesForAnyThreadCount) {
   EXPECT_FALSE(fs::exists(at("x.png")));
 }
 
+TEST_F(Cli, ListsContributionsWithTheSameBytesForAnyThreadCount) {
+  writeTinyScene(at(""));
+  const Scene scene = loadScene(at("tiny.toml"));
+  VplTable lit = tinyRows(scene.contentHash);
+  writeVpl(at("rows.vpl"), lit);
+  lit.stage = VplStage::Lit;
+  lit.position[0] = {-0.5f, 0.25f, 2};
+  lit.normal[0] = {0, 0, -1};
+  lit.radius.assign(4, 0.1f);
+  lit.flux.assign(4, Vec3(1.0f));
+  lit.photons.assign(4, 1);
+  lit.relativeError.assign(4, 0.1f);
+  lit.emitPosition = lit.position;
+  lit.emitNormal = lit.normal;
+  lit.firstBounceFlux.assign(4, Vec3(0.0f));
+  writeVpl(at("lit.vpl"), lit);
+  const std::string scenePart = " --scene " + path("tiny.toml") + " -o ";
+  const std::string list = "contributions " + path("lit.vpl") + scenePart;
+  const Outcome one = runInspect(list + path("1.json") + " --threads 1 --depfile " + path("1.d"));
+  ASSERT_EQ(one.code, kExitOk) << one.output;
+  EXPECT_EQ(runInspect(list + path("7.json") + " --threads 7").code, kExitOk);
+  EXPECT_EQ(readAll(at("1.json")), readAll(at("7.json")));
+  EXPECT_TRUE(contains(readAll(at("1.d")), "tiny.mtl"));
+  const Json found = Json::parse(readAll(at("1.json")));
+  EXPECT_EQ(found.at("format"), "bnvpl.contributions");
+  EXPECT_EQ(found.at("width"), 80);
+  EXPECT_EQ(found.at("pixels").at("rows").size(), 80u * 60u);
+  EXPECT_TRUE(found.at("rows").at("x")[3].is_null()) << "it is behind the camera";
+  EXPECT_GT(found.at("rows").at("radiance")[0].get<double>(), 0.0);
+
+  // An existing list may be replaced, other JSON not.
+  EXPECT_EQ(runInspect(list + path("1.json") + " --per-pixel 1 --size 8x6").code, kExitOk);
+  writeAll(at("package.json"), "{\"name\": \"x\"}");
+  EXPECT_NE(runInspect(list + path("package.json")).code, kExitOk);
+  EXPECT_EQ(readAll(at("package.json")), "{\"name\": \"x\"}");
+  for (const std::string& command :
+       {"contributions " + path("rows.vpl") + scenePart + path("x.json"),
+        "plot " + path("rows.vpl") + scenePart + path("x.png") + " --color contribution"}) {
+    const Outcome unlit = runInspect(command);
+    EXPECT_EQ(unlit.code, kExitInput);
+    EXPECT_TRUE(contains(unlit.output, "vpl-estimate")) << unlit.output;
+  }
+  // A VPL that lights nothing has the colour of the least.
+  const std::string plot = "plot " + path("lit.vpl") + scenePart;
+  EXPECT_EQ(runInspect(plot + path("c.png") + " --color contribution --show-back").code, kExitOk);
+  EXPECT_EQ(runInspect(plot + path("f.png") + " --show-back").code, kExitOk);
+  EXPECT_NE(readAll(at("c.png")), readAll(at("f.png")));
+}
+
 TEST_F(Cli, PlotRefusesAnotherScene) {
   writeTinyScene(at(""));
   writeVpl(at("rows.vpl"), tinyRows(1));

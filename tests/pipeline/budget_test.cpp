@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/pipeline/tool_runner.h"
+#include "tests/support/sanitizers.h"
 #include "tools/common/run/exit_codes.h"
 
 namespace bnvpl {
@@ -71,6 +72,7 @@ TEST_F(BudgetRun, ATimeIsKeptAndItsImageRepeated) {
 
 // Ten passes of four samples a pixel would take several times as long, so that passes have fewer.
 TEST_F(BudgetRun, ALargeFilmHasPassesThatFitIntoTheTime) {
+  if (kSanitized) GTEST_SKIP() << "sanitizers take several times as long";
   const std::string film =
       scene_ + " --integrator path --size 1024x768 --stats " + path("s.json") + " -o ";
   succeed("vpl-render", film + path("a.exr") + " --time 3s");

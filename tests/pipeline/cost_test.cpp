@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "tests/pipeline/tool_runner.h"
+#include "tests/support/sanitizers.h"
 #include "tools/common/run/exit_codes.h"
 
 namespace bnvpl {
@@ -85,6 +86,7 @@ TEST_F(CostRun, ShardsTakeTheirPart) {
 // These runs would never end in practice. The limit is on CPU seconds of the estimate itself, which
 // load hardly changes.
 TEST_F(CostRun, EndsInSecondsWhateverIsAsked) {
+  if (kSanitized) GTEST_SKIP() << "sanitizers take several times as long";
   makeStages(scene_);
   const std::string vpls = scene_ + " " + path("vpls.vpl") + " -o " + path("x.vpl"),
                     lit = scene_ + " " + path("lit.vpl"), image = " -o " + path("x.exr");
@@ -106,6 +108,7 @@ TEST_F(CostRun, EndsInSecondsWhateverIsAsked) {
 
 // The predicted cost grows with the work, including preparations that a probe does only in part.
 TEST_F(CostRun, GrowsWithWhatIsAskedFor) {
+  if (kSanitized) GTEST_SKIP() << "sanitizers take several times as long";
   makeStages(scene_);
   const std::string vpls = scene_ + " " + path("vpls.vpl") + " -o " + path("x.vpl"),
                     lit = scene_ + " " + path("lit.vpl") + " -o " + path("x.exr");

@@ -7,6 +7,8 @@
 namespace bnvpl {
 namespace {
 
+using std::string_literals::operator""s;
+
 class Files : public PipelineTest {
  protected:
   void SetUp() override {
@@ -186,11 +188,11 @@ TEST_F(Files, AnOutputReplacesNoFileOfAnotherMaker) {
   write("table.csv", "id,price\n1,2\n");
   write("drawing.svg", "<svg xmlns=\"http://www.w3.org/2000/svg\"><!-- by hand --></svg>\n");
   write("drawing2.svg", "<?xml version=\"1.0\"?>\n<svg/>\n");
-  write("photo.png", std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\1\0\0\0\1\x08\2\0\0\0abcd"
-                                 "\0\0\0\4gAMA\0\0\xb1\x8f"
-                                 "abcd",
-                                 57));
-  write("sky.exr", std::string("\x76\x2f\x31\x01\2\0\0\0channels\0chlist\0", 24));
+  write("photo.png",
+        "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\1\0\0\0\1\x08\2\0\0\0abcd"
+        "\0\0\0\4gAMA\0\0\xb1\x8f"
+        "abcd"s);
+  write("sky.exr", "\x76\x2f\x31\x01\2\0\0\0channels\0chlist\0"s);
   for (const char* name : {"mesh.ply", "late.ply", "table.csv"})
     refused("vpl-inspect", exports + path(name), {name, "of vpl-inspect", "name another file"},
             kExitOutput);

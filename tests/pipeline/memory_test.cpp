@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/pipeline/tool_runner.h"
+#include "tests/support/sanitizers.h"
 
 namespace bnvpl {
 namespace {
@@ -9,9 +10,7 @@ namespace {
 class Memory : public PipelineTest {
  protected:
   void SetUp() override {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-    GTEST_SKIP() << "sanitizers keep what is freed";
-#endif
+    if (kSanitized) GTEST_SKIP() << "sanitizers keep what is freed";
     makeStages(scene_);
   }
   // Each thread has its own buffers, and which of many threads get work is random; so two are used.

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "scene/load_scene.h"
+#include "tests/support/sanitizers.h"
 #include "transport/lights.h"
 
 namespace bnvpl {
@@ -30,9 +31,7 @@ void loadTimes(int times) {
 }
 
 TEST(Memory, LoadingAgainTakesNoMore) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "sanitizers keep what is freed";
-#endif
+  if (kSanitized) GTEST_SKIP() << "sanitizers keep what is freed";
   // A leak grows in every round; memory that allocators and thread pools retain does not.
   double leastGrowth = std::numeric_limits<double>::infinity();
   loadTimes(4);

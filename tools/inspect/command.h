@@ -17,7 +17,9 @@ struct Command {
 Command infoCommand(CLI::App& cli);
 Command checkCommand(CLI::App& cli);
 Command exportCommand(CLI::App& cli);
-Command plotCommand(CLI::App& cli, ToolOptions& tool);  // with --depfile
+// These two take --depfile, too.
+Command plotCommand(CLI::App& cli, ToolOptions& tool);
+Command contributionsCommand(CLI::App& cli, ToolOptions& tool);
 Command sceneCommand(CLI::App& cli);
 Command doctorCommand(CLI::App& cli);
 Command runCommand(CLI::App& cli);

@@ -19,9 +19,15 @@ int main(int argc, char** argv) {
                     {"how a scene is understood", "vpl-inspect scene scenes/cornell/scene.toml"},
                     {"how far an image is from a reference",
                      "vpl-inspect compare image.exr reference.exr --diff difference.png"}});
-  const Command commands[] = {infoCommand(cli),  checkCommand(cli),  exportCommand(cli),
-                              sceneCommand(cli), doctorCommand(cli), plotCommand(cli, tool),
-                              runCommand(cli),   compareCommand(cli)};
+  const Command commands[] = {infoCommand(cli),
+                              checkCommand(cli),
+                              exportCommand(cli),
+                              sceneCommand(cli),
+                              doctorCommand(cli),
+                              plotCommand(cli, tool),
+                              contributionsCommand(cli, tool),
+                              runCommand(cli),
+                              compareCommand(cli)};
   return runTool(cli, tool, argc, argv, [&] {
     const auto parsed = [](const Command& c) { return c.cli->parsed(); };
     return std::ranges::find_if(commands, parsed)->run(tool);

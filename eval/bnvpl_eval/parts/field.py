@@ -156,10 +156,14 @@ def add_pictures(context: Context, view: View, rows: list[dict[str, Any]]) -> No
         label = f"{row['gather']}, {row['compensate']}"
         shown.append({"id": identity(row), "label": label, "file": row["images"][0]})
     default = [identity(row) for row in rows if row["gather"] == DEFAULT_GATHER]
+    c = context.configuration(view, "local")
+    vpls = context.size["equal_time_vpls"]
+    c = c.but(vpls=vpls, candidates=vpls * context.size["candidates_per_vpl"])
     context.pictures[view.name] = {
         "images": shown,
         "overlays": [],
         "first": default[-1] if default else None,
+        "contributions": pipeline.contributions(context.runner, view, c, 1),
     }
 
 

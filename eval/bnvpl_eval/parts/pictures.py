@@ -52,7 +52,12 @@ def run(context: Context) -> None:
                 )
                 cuts.append(lightcuts(context, view, c))
                 shown.append(equal_time(context, view, c))
-        context.pictures[view.name] = {"images": shown, "overlays": dots(context, view) + cuts}
+        c = context.configuration(view, "local", plan["width"])
+        context.pictures[view.name] = {
+            "images": shown,
+            "overlays": dots(context, view) + cuts,
+            "contributions": pipeline.contributions(context.runner, view, c, 1),
+        }
 
 
 def numbers(context: Context, view: View, method: str) -> str:

@@ -11,13 +11,18 @@ function makeViewer(host) {
   viewers.set(host, viewer);
 }
 
+function makeExplorer(host) {
+  new Explorer(host, page.views[Number(host.dataset.view)], page.exponents);
+}
+
 const nearby = new IntersectionObserver((entries) => {
   for (const entry of entries) {
     if (!entry.isIntersecting) continue;
     nearby.unobserve(entry.target);
-    makeViewer(entry.target);
+    (entry.target.matches(".viewer") ? makeViewer : makeExplorer)(entry.target);
   }
 }, {rootMargin: "800px"});
+for (const host of document.querySelectorAll(".explorer")) nearby.observe(host);
 
 let underPointer = null;
 for (const host of document.querySelectorAll(".viewer")) {

@@ -66,13 +66,12 @@ bool isPng(std::string_view bytes) {
          (bytes[24] == 8 && bytes.substr(37).starts_with("IDAT\x78\x5e"sv));
 }
 
-// The text begins with {"tool":"vpl-, apart from white space. Other JSON, such as a glTF scene,
-// begins otherwise.
-bool isStats(std::string_view text) {
+// Whether JSON begins with this text, apart from white space.
+bool isJson(std::string_view text, std::string_view start) {
   std::string dense;
   std::ranges::copy_if(text.substr(0, 256), std::back_inserter(dense),
                        [](unsigned char c) { return !std::isspace(c); });
-  return dense.starts_with("{\"tool\":\"vpl-");
+  return dense.starts_with(start);
 }
 
 // Make rules without commands: a target, a colon, and files on continued lines.
@@ -109,8 +108,10 @@ bool begins(std::string_view bytes, OutputKind kind) {
       return isCsv(bytes);
     case OutputKind::Shard:
       return startsWith(bytes, ShardHeader{}.magic);
+    case OutputKind::Contributions:
+      return isJson(bytes, "{\"format\":\"bnvpl.contributions\"");
     case OutputKind::Stats:
-      return isStats(bytes);
+      return isJson(bytes, "{\"tool\":\"vpl-");  // a glTF scene begins otherwise
     case OutputKind::Depfile:
       return isDepfile(bytes);
   }
@@ -121,7 +122,7 @@ struct Name {
   const char *extension, *content;
 };
 Name nameOf(OutputKind kind) {
-  static constexpr std::array<Name, 11> kNames{
+  static constexpr std::array<Name, 12> kNames{
       {{".vpl", "VPLs of stage candidates"},
        {".vpl", "VPLs of stage eliminated"},
        {".vpl", "VPLs of stage lit"},
@@ -131,6 +132,7 @@ Name nameOf(OutputKind kind) {
        {".ply", "a PLY point cloud of vpl-inspect"},
        {".csv", "a CSV table of vpl-inspect"},
        {".shard", "a shard"},
+       {".json", "contributions of vpl-inspect"},
        {"", "the JSON summary of a run"},
        {"", "a list of files in Make syntax"}}};
   return kNames.at(static_cast<size_t>(kind));

@@ -21,6 +21,7 @@ enum class OutputKind {
   Ply,
   Csv,
   Shard,
+  Contributions,
   Stats,
   Depfile
 };

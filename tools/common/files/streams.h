@@ -31,7 +31,8 @@ enum class Stream : uint32_t {
   PilotPhotons = 30,  // vpl-estimate --method both
   PilotPaths,
   GridMembers = 40,  // gather grid-hierarchy
-  Octree             // gather paquette
+  Octree,            // gather paquette
+  Contributions      // vpl-inspect contributions
 };
 
 constexpr uint64_t streamKey(uint64_t seed, Stream stream) {

@@ -10,6 +10,7 @@
 #include "core/processor.h"
 #include "formats/atomic_file.h"
 #include "tools/common/options/cli_option.h"
+#include "tools/common/run/progress_meter.h"
 #include "tools/common/stage/stage_cli.h"
 
 namespace bnvpl {
@@ -47,6 +48,11 @@ void addProcessorOption(CLI::App& cli, ToolOptions& options);
 // code. It is the only try/catch of a tool. interrupt.h describes signals.
 int runTool(CLI::App& cli, const ToolOptions& options, int argc, char** argv,
             const std::function<int()>& work);
+
+inline ProgressStyle progressStyle(const ToolOptions& options) {
+  if (options.jsonProgress) return ProgressStyle::JsonLines;
+  return options.quiet ? ProgressStyle::Silent : ProgressStyle::Lines;
+}
 
 // Number of worker threads that the work of runTool() may use.
 unsigned threadsInUse();

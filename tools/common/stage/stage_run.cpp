@@ -21,15 +21,6 @@ void addStageRequest(CLI::App& cli, const StageSpec& spec, StageRequest& request
   addDepfileOption(cli, tool);
 }
 
-namespace {
-
-ProgressStyle styleOf(const ToolOptions& tool) {
-  if (tool.jsonProgress) return ProgressStyle::JsonLines;
-  return tool.quiet ? ProgressStyle::Silent : ProgressStyle::Lines;
-}
-
-}  // namespace
-
 StageRun::StageRun(const std::string& name, const StageRequest& request, const ToolOptions& tool)
     : request_(request), tool_(tool), summary_(name) {}
 
@@ -44,7 +35,7 @@ void StageRun::filesReady(const std::vector<fs::path>& sceneFiles) {
 
 int StageRun::tell(const std::string& counting,
                    const std::function<Cost(const ProgressFn&)>& cost) const {
-  ProgressMeter meter("estimate: " + counting, 0, styleOf(tool_));
+  ProgressMeter meter("estimate: " + counting, 0, progressStyle(tool_));
   printCost(cost(meter.callback()).ofShard(request_.shard), request_.cost);
   return kExitOk;
 }
@@ -54,7 +45,8 @@ int StageRun::make(const StageWork& work) {
   Checkpoint checkpoint(request_.checkpoint, withShard(work.identity, shard));
   OutputSet files;
   {
-    ProgressMeter meter(work.unit, shard ? shard->shareOf(work.count) : work.count, styleOf(tool_));
+    ProgressMeter meter(work.unit, shard ? shard->shareOf(work.count) : work.count,
+                        progressStyle(tool_));
     if (shard) {
       ShardOutput output(files.add(request_.output), *shard);
       output.finish(

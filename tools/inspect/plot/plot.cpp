@@ -63,12 +63,12 @@ Vec3 logColour(float value, float low, float high) {
   return rampColour(high > low ? std::log(value / low) / std::log(high / low) : 0.5f);
 }
 
-// Colours by the strongest channel of flux: dots with the hue of their flux would be lost on walls
-// of that hue. The weakest 2 % and the strongest 1 % get the ends of the ramp.
-std::vector<Vec3> fluxColours(const VplTable& table) {
-  const float low = fluxPercentile(table, 0.02), high = displayFlux(table);
+// The weakest 2 % and the strongest 1 % of the values get the ends of the ramp.
+std::vector<Vec3> logColours(const std::vector<float>& values) {
+  const float low = percentileOf(values, 0.02), high = percentileOf(values, 0.99);
   std::vector<Vec3> colours;
-  for (const Vec3& flux : table.flux) colours.push_back(logColour(maxComponent(flux), low, high));
+  colours.reserve(values.size());
+  for (const float v : values) colours.push_back(logColour(v, low, high));
   return colours;
 }
 
@@ -80,13 +80,15 @@ std::vector<Vec3> radiusColours(const VplTable& table) {
   return colours;
 }
 
-std::vector<Vec3> dotColours(const VplTable& table, DotColour colour) {
+std::vector<Vec3> dotColours(const VplTable& table, const PlotOptions& options) {
+  const DotColour colour = options.colour;
   if (colour == DotColour::Flux) {
     if (table.stage < VplStage::Lit) {
       throw InputError("the rows have no flux to colour by; name a file from " +
                        std::string(stageTools(VplStage::Lit)));
     }
-    return fluxColours(table);
+    // The strongest channel counts: dots with the hue of their flux would be lost on walls of it.
+    return logColours(strongestFlux(table));
   }
   if (colour == DotColour::Radius) {
     if (table.stage < VplStage::Eliminated) {
@@ -94,6 +96,8 @@ std::vector<Vec3> dotColours(const VplTable& table, DotColour colour) {
     }
     return radiusColours(table);
   }
+  if (colour == DotColour::Contribution)
+    return logColours({options.contributions.begin(), options.contributions.end()});
   return std::vector<Vec3>(table.size(), kPlainDot);
 }
 
@@ -123,41 +127,43 @@ Canvas shadeView(const RayScene& rays, unsigned samplesPerAxis) {
   return canvas;
 }
 
-std::vector<Dot> visibleDots(const VplTable& table, const RayScene& rays,
-                             const PlotOptions& options, PlotCounts& counts) {
-  enum class Fate : uint8_t { Drawn, Away, AwayInSight, Occluded, Outside };
+std::vector<RowInView> rowsInView(const VplTable& table, const RayScene& rays) {
   const Scene& scene = rays.scene();
-  const std::vector<Vec3> colours = dotColours(table, options.colour);
-  std::vector<Dot> dots(table.size());
-  std::vector<Fate> fates(table.size());
+  std::vector<RowInView> rows(table.size());
   parallelFor(table.size(), 256, [&](size_t i) {
     const Vec3 position = table.position[i];
     const RasterPoint film = projectToFilm(scene.camera, scene.film, position);
-    dots[i] = {film.x * static_cast<float>(scene.film.width),
-               film.y * static_cast<float>(scene.film.height), film.depth, colours[i], false};
     const bool faces = dot(table.normal[i], scene.camera.position - position) > 0.0f;
     const bool inside =
         film.depth > 0.0f && film.x >= 0.0f && film.x <= 1.0f && film.y >= 0.0f && film.y <= 1.0f;
-    if (!inside) {
-      fates[i] = faces ? Fate::Outside : Fate::Away;
-      return;
-    }
+    rows[i] = {film, faces ? RowSight::Outside : RowSight::FacingAway};
+    if (!inside) return;
     const Vec3 side = faces ? table.normal[i] : -table.normal[i];
     const bool hidden = rays.occluded(scene.camera.position, rays.offsetOrigin(position, side));
     if (faces)
-      fates[i] = hidden ? Fate::Occluded : Fate::Drawn;
-    else
-      fates[i] = hidden ? Fate::Away : Fate::AwayInSight;
+      rows[i].sight = hidden ? RowSight::Occluded : RowSight::InSight;
+    else if (!hidden)
+      rows[i].sight = RowSight::BackInSight;
   });
+  return rows;
+}
 
+std::vector<Dot> visibleDots(const VplTable& table, const RayScene& rays,
+                             const PlotOptions& options, PlotCounts& counts) {
+  const std::vector<Vec3> colours = dotColours(table, options);
+  const std::vector<RowInView> rows = rowsInView(table, rays);
+  const auto width = static_cast<float>(rays.scene().film.width);
+  const auto height = static_cast<float>(rays.scene().film.height);
   std::vector<Dot> visible;
-  for (size_t i = 0; i < table.size(); ++i) {
-    counts.drawn += fates[i] == Fate::Drawn;
-    counts.facingAway += fates[i] == Fate::Away || fates[i] == Fate::AwayInSight;
-    counts.occluded += fates[i] == Fate::Occluded;
-    counts.outside += fates[i] == Fate::Outside;
-    dots[i].hollow = fates[i] == Fate::AwayInSight;
-    if (fates[i] == Fate::Drawn || (dots[i].hollow && options.showBack)) visible.push_back(dots[i]);
+  for (size_t i = 0; i < rows.size(); ++i) {
+    const auto& [film, sight] = rows[i];
+    const bool back = sight == RowSight::BackInSight;
+    counts.drawn += sight == RowSight::InSight;
+    counts.facingAway += sight == RowSight::FacingAway || back;
+    counts.occluded += sight == RowSight::Occluded;
+    counts.outside += sight == RowSight::Outside;
+    if (sight != RowSight::InSight && !(back && options.showBack)) continue;
+    visible.push_back({film.x * width, film.y * height, film.depth, colours[i], back});
   }
   return visible;
 }

@@ -4,18 +4,28 @@
 
 #include "formats/vpl/vpl_table.h"
 #include "tools/inspect/plot/plot_canvas.h"
-#include "transport/rays.h"
+#include "transport/camera.h"
 
 namespace bnvpl {
 
-enum class DotColour { Flux, Radius, Plain };
+enum class DotColour { Flux, Contribution, Radius, Plain };
 
 struct PlotOptions {
   double dotPixels = 5.0;  // diameter
   DotColour colour = DotColour::Plain;
   bool showBack = false;  // draw rings for visible rows whose lit side faces away
   unsigned samples = 3;   // samples of the view per pixel and axis
+  // Light that each row brings to the film, for DotColour::Contribution.
+  std::vector<double> contributions = {};
 };
+
+// Where a row stands in the view.
+enum class RowSight : uint8_t { InSight, FacingAway, BackInSight, Occluded, Outside };
+struct RowInView {
+  RasterPoint film;
+  RowSight sight;
+};
+std::vector<RowInView> rowsInView(const VplTable& table, const RayScene& rays);
 
 // Numbers of rows by visibility; they add up to all rows.
 struct PlotCounts {

@@ -12,14 +12,17 @@
 #include "tools/common/run/exit_codes.h"
 #include "tools/common/stage/scene_options.h"
 #include "tools/inspect/command.h"
+#include "tools/inspect/contributions/contributions.h"
 #include "tools/inspect/plot/plot.h"
 
 namespace bnvpl {
 
 namespace {
 
-const Choices<DotColour> kDotColours{
-    {"flux", DotColour::Flux}, {"radius", DotColour::Radius}, {"plain", DotColour::Plain}};
+const Choices<DotColour> kDotColours{{"flux", DotColour::Flux},
+                                     {"contribution", DotColour::Contribution},
+                                     {"radius", DotColour::Radius},
+                                     {"plain", DotColour::Plain}};
 
 struct PlotRequest {
   fs::path file, output;
@@ -36,17 +39,21 @@ CLI::App* addPlotOptions(CLI::App& cli, PlotRequest& c) {
   addSceneFlag(*sub, c.scene, "the scene (.toml) that the rows lie on")->required();
   addFile(*sub, "-o,--output", c.output, "picture (.png)")->required();
   addReal(*sub, realOption("dot", "", 1, 100, "pixels", "diameter of a dot"), c.plot.dotPixels);
-  addChoice(*sub, "--color", c.plot.colour, kDotColours,
-            "quantity that colours the dots, from violet (low) to yellow (high)")
+  addChoice(
+      *sub, "--color", c.plot.colour, kDotColours,
+      "quantity that colours the dots, from violet (low) to yellow (high); contribution is what "
+      "a VPL brings to the view")
       ->default_str("flux if lit, else plain");
   sub->add_flag("--show-back", c.plot.showBack,
                 "draw rings for visible rows whose lit side faces away");
   sub->add_option("--size", c.size, "size of the picture in pixels; default: the scene's film")
       ->type_name("WIDTHxHEIGHT");
-  addExamples(
-      *sub, {{"the VPLs in the view", "vpl-inspect plot lit.vpl --scene scene.toml -o vpls.png"},
-             {"their radii, as large dots",
-              "vpl-inspect plot lit.vpl --scene scene.toml -o radii.png --color radius --dot 9"}});
+  addExamples(*sub,
+              {{"the VPLs in the view", "vpl-inspect plot lit.vpl --scene scene.toml -o vpls.png"},
+               {"their radii, as large dots",
+                "vpl-inspect plot lit.vpl --scene scene.toml -o radii.png --color radius --dot 9"},
+               {"which of them light the view",
+                "vpl-inspect plot lit.vpl --scene scene.toml -o dots.png --color contribution"}});
   return sub;
 }
 
@@ -65,6 +72,14 @@ int runPlot(const PlotRequest& command, const ToolOptions& tool) {
   if (!command.colourGiven && table.stage == VplStage::Lit) options.colour = DotColour::Flux;
 
   const RayScene rays(scene);
+  if (options.colour == DotColour::Contribution) {
+    if (table.stage != VplStage::Lit)
+      throw InputError("--color contribution needs lit rows; run vpl-estimate first");
+    ProgressMeter meter("rows of pixels", contributionFilm(scene.film).height, progressStyle(tool));
+    options.contributions =
+        contributionsOf(rays, table, {.film = contributionFilm(scene.film)}, meter.callback())
+            .radiance;
+  }
   PlotCounts counts;
   std::vector<Dot> dots = visibleDots(table, rays, options, counts);
   Canvas canvas = shadeView(rays, options.samples);
