@@ -10,6 +10,7 @@ import subprocess
 import sys
 import tempfile
 import threading
+import time
 import unittest
 from pathlib import Path
 
@@ -84,7 +85,8 @@ class Preview(unittest.TestCase):
 
     def render(self, port: int, *more: str, integrator: str = "path", address: str = "") -> str:
         command = [BIN / "vpl-render", SCENE, "-o", self.image, "--integrator", integrator]
-        command += ["--size", f"{WIDTH}x{HEIGHT}"]
+        if "--size" not in more:
+            command += ["--size", f"{WIDTH}x{HEIGHT}"]
         command += ["--preview", address or f"127.0.0.1:{port}", *more]
         words = [str(word) for word in command]
         return subprocess.run(words, check=True, text=True, capture_output=True).stdout
@@ -150,6 +152,19 @@ class Preview(unittest.TestCase):
         with socket.create_server(("127.0.0.1", 0)) as closed:
             port = closed.getsockname()[1]
         self.assertIn("no viewer was at", self.render(port, "--spp", "1"))
+        self.assertTrue(self.image.exists())
+
+    def test_a_viewer_that_does_not_read_is_said_to_lack_the_image(self) -> None:
+        with socket.socket() as deaf:
+            deaf.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+            deaf.bind(("127.0.0.1", 0))
+            deaf.listen()
+            port = deaf.getsockname()[1]
+            started = time.monotonic()
+            out = self.render(port, "--spp", "1", "--size", "1024x1024")
+            self.assertIn("but not the whole image", out)
+            self.assertNotIn("shown by", out)
+            self.assertLess(time.monotonic() - started, 60)
         self.assertTrue(self.image.exists())
 
     def test_addresses_of_version_6_keep_their_brackets(self) -> None:

@@ -189,10 +189,11 @@ void reportPasses(const PassesDone& passes, const Values& options, Summary& summ
   summary.add("ended_by", passes.endedBy);
   const double wantedS = options.has(kTimeOption) ? options[kTimeOption] : INFINITY;
   if (passes.passes == kMinPasses && passes.timeS > 1.1 * wantedS) {
-    std::snprintf(line, sizeof line,
-                  "two passes, the fewest, took %.1f s instead of --time's %.6g; choose a smaller "
-                  "--size, or a lower quality",
-                  passes.timeS, wantedS);
+    std::snprintf(
+        line, sizeof line,
+        "two passes, the fewest, ended after %.1f s instead of --time's %.6g; choose a smaller "
+        "--size, or a lower quality",
+        passes.timeS, wantedS);
     warnOfResult(line);
   }
 }

@@ -26,12 +26,15 @@ FilmPreview Previews::begin(const ImagePaths& paths, const Values& options, cons
 void Previews::finish(const Image& image, Summary& summary) {
   if (!viewer_) return;
   viewer_->show(image);
-  const uint64_t blocks = viewer_->finish();
-  const std::string at = addressText(*address_);
-  summary.add("preview_blocks", blocks,
-              blocks > 0
-                  ? "shown by the viewer at " + at + " in " + std::to_string(blocks) + " updates"
+  const LiveViewer::Sent sent = viewer_->finish();
+  const std::string at = addressText(*address_), updates = std::to_string(sent.blocks) + " updates";
+  summary.add("preview_blocks", sent.blocks,
+              sent.whole ? "shown by the viewer at " + at + " in " + updates
+              : sent.blocks > 0
+                  ? "the viewer at " + at + " took " + updates +
+                        ", but not the whole image; start it again, or open the file"
                   : "no viewer was at " + at + "; start tev there to see the image come");
+  summary.add("preview_whole", sent.whole);
 }
 
 }  // namespace bnvpl

@@ -77,14 +77,14 @@ void LiveViewer::show(const Image& image) {
   show({0, 0, static_cast<int>(width_), static_cast<int>(height_)}, radiance);
 }
 
-uint64_t LiveViewer::finish() {
+LiveViewer::Sent LiveViewer::finish() {
   {
     const std::scoped_lock lock(mutex_);
     finishing_ = true;
   }
   wake_.notify_all();
   thread_.join();
-  return sent_;
+  return {sent_, sent_ > 0 && changedCount_ == 0};
 }
 
 void LiveViewer::run() {
@@ -132,6 +132,7 @@ bool LiveViewer::sendNext(std::unique_lock<std::mutex>& lock) {
   const double restS = std::min(kLongestRestS, kRestForEach * (nowS() - startS));
   lock.lock();
   sent_ += taken;
+  if (!taken) changedCount_ += !changed_[block], changed_[block] = 1;
   if (taken)
     wake_.wait_for(lock, std::chrono::duration<double>(restS),
                    [this] { return finishing_ || stop_; });

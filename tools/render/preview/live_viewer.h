@@ -31,9 +31,13 @@ class LiveViewer {
   void show(const PixelBox& box, std::span<const Vec3> radiance);
   // Replaces the film by R, G, B of an image of its size.
   void show(const Image& image);
-  // Sends what is left, if a viewer is there, for ten seconds at most. Returns the number of blocks
-  // that were sent in all.
-  uint64_t finish();
+  struct Sent {
+    uint64_t blocks;  // over the whole run
+    bool whole;       // whether the viewer has all newest pixels
+  };
+  // Sends what is left, if a viewer is there, for ten seconds at most; one that takes nothing for
+  // three seconds gets no more.
+  Sent finish();
 
  private:
   void run();
