@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/cost_probe.h"
+#include "core/cost_trial.h"
 #include "core/errors.h"
 #include "core/parallel.h"
 #include "core/shard.h"
@@ -28,8 +28,8 @@ struct Resume {
   Shard shard = {};                     // units to do
   const ShardSink* sink = nullptr;      // receives the units' results; the stage returns none
   const ShardSource* source = nullptr;  // results of all units, computed elsewhere
-  CostProbe* probe = nullptr;           // set by --estimate
-  double times = 1.0;                   // number of units that one unit of the probe represents
+  CostTrial* trial = nullptr;           // set by --estimate
+  double times = 1.0;                   // number of units that one unit of the trial represents
 };
 
 // Marks each unit 0 if it is to be done here, and kElsewhere if it belongs to another shard.
@@ -52,7 +52,7 @@ void forUnitsLeft(std::vector<uint8_t>& done, const Resume& resume, const Unit& 
       const size_t i = order(k);
       if (done[i] || paused.load(std::memory_order_relaxed)) return;
       {
-        const CostProbe::Unit timed(resume.probe, resume.times);
+        const CostTrial::Unit timed(resume.trial, resume.times);
         unit(i);
       }
       done[i] = 1;

@@ -5,7 +5,7 @@
 #include "core/parallel.h"
 #include "spatial/facing.h"
 #include "spatial/morton_order.h"
-#include "transport/light_probes.h"
+#include "transport/strata_pilot.h"
 
 namespace bnvpl {
 
@@ -16,7 +16,7 @@ namespace {
 constexpr size_t kPointsOfGroup = 8, kMaxGroups = 512;
 // Max number of strata. Tiles of the film have more, because each place here has few rays.
 constexpr size_t kStrata = 256;
-constexpr size_t kProbes = 16;  // probes of each stratum
+constexpr size_t kRaysEach = 16;  // pilot rays of each stratum
 
 // Neighbouring points whose normals have the same dominant axis and sign.
 struct Group {
@@ -66,12 +66,12 @@ SpatialLightSampler::SpatialLightSampler(const RayScene& rays, const LightSet& l
     std::vector<Bsdf> vertices;
     for (const SurfacePoint& p : at) vertices.emplace_back(p, Vec3(1.0f));
     Rng rng(key, g);
-    found[g] = probeStrata(rays, lights, strata_, vertices, kProbes, rng);
+    found[g] = estimateStrata(rays, lights, strata_, vertices, kRaysEach, rng);
     if (progress) progress(1);
   });
   groups_.resize(groups.size());
   parallelFor(groups.size(), 16, [&](size_t g) {
-    PooledProbes sum(strata_.size());
+    PooledStrata sum(strata_.size());
     for (size_t k = g > 0 ? g - 1 : 0; k < std::min(groups.size(), g + 2); ++k) {
       if (groups[k].facing == groups[g].facing) sum.add(found[k]);
     }

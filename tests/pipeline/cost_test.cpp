@@ -56,7 +56,7 @@ class CostRun : public PipelineTest {
     EXPECT_LT(told.memoryMiB, 1.5 * took.memoryMiB) << what;
     EXPECT_GT(told.memoryMiB, took.memoryMiB / 1.5) << what;
   }
-  // Each run is so long that its probe is only a part of it.
+  // Each run is so long that its trial is only a part of it.
   void expectAllPredicted(const std::string& scene) const {
     expectPredicted("vpl-place", scene + " -n 200k -o " + path("candidates.vpl"));
     expectPredicted("vpl-eliminate", path("candidates.vpl") + " -n 20k -o " + path("vpls.vpl"));
@@ -101,12 +101,12 @@ TEST_F(CostRun, EndsInSecondsWhateverIsAsked) {
            {"vpl-render", lit + image + " --integrator guided --spp 1M --guide-rays 1024"},
            {"vpl-render", scene_ + image + " --integrator path --size 16384x16384 --spp 1M"},
            {"vpl-render", scene_ + image + " --integrator light --spp 1M"}}) {
-    const Need probe = taken(name, arguments + " --estimate");
-    EXPECT_LT(probe.cpuS, 30.0) << name << " " << arguments;
+    const Need trial = taken(name, arguments + " --estimate");
+    EXPECT_LT(trial.cpuS, 30.0) << name << " " << arguments;
   }
 }
 
-// The predicted cost grows with the work, including preparations that a probe does only in part.
+// The predicted cost grows with the work, including preparations that a trial does only in part.
 TEST_F(CostRun, GrowsWithWhatIsAskedFor) {
   if (kSanitized) GTEST_SKIP() << "sanitizers take several times as long";
   makeStages(scene_);
@@ -114,7 +114,7 @@ TEST_F(CostRun, GrowsWithWhatIsAskedFor) {
                     lit = scene_ + " " + path("lit.vpl") + " -o " + path("x.exr");
   const auto grows = [&](const std::string& name, const std::string& few, const std::string& many,
                          double times) {
-    // The median of three estimates is robust against a probe that the machine disturbs.
+    // The median of three estimates is robust against a trial that the machine disturbs.
     const auto cpuS = [&](const std::string& arguments) {
       std::array<double, 3> s;
       for (double& one : s) one = estimated(name, arguments).cpuS;

@@ -30,7 +30,7 @@ Cost costOfEliminating(const VplTable& candidates, const Values& options, const 
   Cost cost = costOfRows(candidates.size(), kFirst, part,
                          [](uint64_t rows) { return static_cast<double>(rows); });
   if (points > 0) cost.workCpuS *= static_cast<double>(points) / static_cast<double>(judges);
-  cost.memoryBytes -= kBytesPerRow * static_cast<double>(candidates.size());  // the probe's copy
+  cost.memoryBytes -= kBytesPerRow * static_cast<double>(candidates.size());  // the trial's copy
   return cost;
 }
 

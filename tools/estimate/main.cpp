@@ -38,8 +38,8 @@ int runEstimate(const StageRequest& request, const fs::path& input, const ToolOp
   };
   if (run.estimating()) {
     return run.tell(std::string(work.unit), [&](const ProgressFn& progress) {
-      CostProbe probe(cpuSecondsSoFar);
-      return costOfUnits([&](const Resume& resume) { result(progress, resume); }, probe,
+      CostTrial trial(cpuSecondsSoFar);
+      return costOfUnits([&](const Resume& resume) { result(progress, resume); }, trial,
                          {.fewest = 64.0});
     });
   }

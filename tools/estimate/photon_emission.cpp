@@ -14,7 +14,7 @@ namespace {
 // Photons of the estimate per pilot photon, of which there are at most kMaxPilot. A quarter of them
 // estimates the VPLs' flux.
 constexpr uint64_t kPilotShare = 32, kMaxPilot = 1 << 20, kFluxShare = 4;
-constexpr uint64_t kProbePhotons = 1 << 16;  // limit for a cost probe (--estimate)
+constexpr uint64_t kTrialPhotons = 1 << 16;  // limit for a cost trial (--estimate)
 constexpr double kMinFlux = 0.1;
 
 // Weights of the VPLs' variances: one over the flux, by photons that start in proportion to power.
@@ -39,8 +39,8 @@ LearnedEmission learnPhotonEmission(const EstimateInputs& in, const Values& opti
                                     unsigned maxBounces, uint64_t photons) {
   if (options[kEmissionOption] == "power" || in.resume.source) return {EmissionGuide(in.lights)};
   const uint64_t pilot = std::min(kMaxPilot, (photons + kPilotShare - 1) / kPilotShare),
-                 sent = unitsToTry(in.resume.probe, pilot, kProbePhotons);
-  const CostProbe::Part part(in.resume.probe,
+                 sent = unitsToTry(in.resume.trial, pilot, kTrialPhotons);
+  const CostTrial::Part part(in.resume.trial,
                              static_cast<double>(pilot) / static_cast<double>(sent));
   const uint64_t key = streamKey(options[kSeedOption], Stream::PhotonEmission);
   const PhotonShares shares(in.lights, std::max<uint64_t>(1, sent / kFluxShare));

@@ -52,11 +52,11 @@ Cost costOfRendering(const RayScene& rays, const LightSet& lights, const VplTabl
   const Film& small = rays.scene().film;
   const double pixels = double(film.width) * film.height,
                fewPixels = double(small.width) * small.height;
-  CostProbe probe(cpuSecondsSoFar);
-  probe.pixels = uint64_t{film.width} * film.height;
-  probe.repeats = double(spp) / double(tried);
+  CostTrial trial(cpuSecondsSoFar);
+  trial.pixels = uint64_t{film.width} * film.height;
+  trial.repeats = double(spp) / double(tried);
   const MemoryWatch memory;
-  const Integrator integrator = makeIntegrator(rays, lights, lit, plain, progress, &probe);
+  const Integrator integrator = makeIntegrator(rays, lights, lit, plain, progress, &trial);
   UnitsToTry units;
   units.apart = apart;
   // Photons go in rounds of as many samples as 64 tiles have; some of each round are to be tried.
@@ -65,7 +65,7 @@ Cost costOfRendering(const RayScene& rays, const LightSet& lights, const VplTabl
       [&](const Resume& resume) {
         renderSamples(rays, integrator, plain, static_cast<uint32_t>(tried), progress, resume);
       },
-      probe, units);
+      trial, units);
   constexpr double kDevelopS = 5e-7;  // a pixel, its file included (measured)
   cost.workCpuS *= pixels / fewPixels * (double(spp) / double(tried));
   if (!apart) cost.workCpuS += kDevelopS * pixels;

@@ -6,7 +6,7 @@
 
 namespace bnvpl {
 
-// A film that the probe can hold, of the same shape and view.
+// A film that the trial can hold, of the same shape and view.
 Film filmToTry(const Film& film);
 
 // What is asked for.

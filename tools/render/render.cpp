@@ -264,7 +264,7 @@ RenderResult joinRendered(const Film& film, const Values& options, const ShardSo
 }
 
 Integrator makeIntegrator(const RayScene& rays, const LightSet& lights, const VplTable& lit,
-                          const Values& options, const ProgressFn& progress, CostProbe* probe) {
+                          const Values& options, const ProgressFn& progress, CostTrial* trial) {
   const FilmOptions film = filmOptionsOf(options);
   const IntegratorMethod& method = integratorOf(options);
   const auto groups = static_cast<uint32_t>(lightGroupsOf(options, rays.scene()).size());
@@ -277,7 +277,7 @@ Integrator makeIntegrator(const RayScene& rays, const LightSet& lights, const Vp
           "rerun it");
     }
   }
-  return method.make({rays, lights, lit, film.seed, film.only, film.filter, progress, probe, groups,
+  return method.make({rays, lights, lit, film.seed, film.only, film.filter, progress, trial, groups,
                       std::move(litGroups)},
                      options);
 }

@@ -53,10 +53,10 @@ struct RenderResult {
   double evenRadiance = 0.0;
 };
 
-// Makes the integrator of render(). `probe` is set for a cost estimate.
+// Makes the integrator of render(). `trial` is set for a cost estimate.
 Integrator makeIntegrator(const RayScene& rays, const LightSet& lights, const VplTable& lit,
                           const Values& options, const ProgressFn& progress,
-                          CostProbe* probe = nullptr);
+                          CostTrial* trial = nullptr);
 // Renders only samples, `spp` per pixel, for a cost estimate.
 void renderSamples(const RayScene& rays, const Integrator& integrator, const Values& options,
                    uint32_t spp, const ProgressFn& progress, const Resume& resume);

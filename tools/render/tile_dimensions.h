@@ -10,7 +10,7 @@ namespace bnvpl {
 
 enum TileDimension : uint32_t {
   // Tile cuts (gather/tilecuts).
-  kDimProbe = 0,
+  kDimReceiver = 0,
   kDimVpl = 1,
   kDimStratum = 2,
   kDimPacket = 3,
@@ -37,7 +37,7 @@ enum TileDimension : uint32_t {
 
 namespace dimensions {
 inline constexpr std::array kAll{
-    kDimProbe,         kDimVpl,          kDimStratum,      kDimPacket,
+    kDimReceiver,      kDimVpl,          kDimStratum,      kDimPacket,
     kDimRoulette,      kDimReceivers,    kDimRay,          kDimMoreRays0,
     kDimMoreRays1,     kDimCameraPath,   kDimEmissionRays, kDimControlRays,
     kDimDirectSamples, kDimDirectPilots, kDimLight,        kDimParity};

@@ -16,8 +16,8 @@
 namespace bnvpl {
 namespace {
 
-constexpr double kMinCpuS = 0.5;   // CPU time of a probe, if the work is that long
-constexpr double kMaxCpuS = 10.0;  // CPU time of all probes, if single units are short
+constexpr double kMinCpuS = 0.5;   // CPU time of a trial, if the work is that long
+constexpr double kMaxCpuS = 10.0;  // CPU time of all trials, if single units are short
 
 double bytesIn(const char* key) {  // a line of /proc/self/status: "VmHWM:     12345 kB"
   std::ifstream in("/proc/self/status");
@@ -29,28 +29,28 @@ double bytesIn(const char* key) {  // a line of /proc/self/status: "VmHWM:     1
   return static_cast<double>(kib) * 1024.0;
 }
 
-struct Probe {
+struct TriedUnits {
   double cpuS = 0.0, units = 0.0;
 };
 
-Probe tryUnits(const std::function<void(const Resume&)>& part, const Shard& shard, CostProbe& probe,
-               bool apart) {
+TriedUnits tryUnits(const std::function<void(const Resume&)>& part, const Shard& shard,
+                    CostTrial& trial, bool apart) {
   std::atomic<uint64_t> units{0};
   const ShardSink nowhere{[](std::string_view, uint64_t, std::string_view) {},
                           [](std::string_view, std::span<const int64_t>) {}};
   Resume resume;
   resume.shard = shard;
   resume.sink = &nowhere;
-  resume.probe = &probe;
+  resume.trial = &trial;
   resume.pause = [&] {  // called once after each unit
     units.fetch_add(1, std::memory_order_relaxed);
     return false;
   };
   resume.save = [](const std::string&) {};
-  probe.share = apart ? 1.0 : static_cast<double>(shard.parts()) / static_cast<double>(shard.of);
-  const double before = cpuSecondsSoFar() + probe.skippedCpuS();
+  trial.share = apart ? 1.0 : static_cast<double>(shard.parts()) / static_cast<double>(shard.of);
+  const double before = cpuSecondsSoFar() + trial.skippedCpuS();
   part(resume);
-  return {cpuSecondsSoFar() + probe.skippedCpuS() - before, static_cast<double>(units)};
+  return {cpuSecondsSoFar() + trial.skippedCpuS() - before, static_cast<double>(units)};
 }
 
 // The middle one of about `parts` parts. Their number is odd: rows of an image often have an even
@@ -92,23 +92,23 @@ Cost Cost::ofShard(const std::optional<Shard>& shard) const {
   return cost;
 }
 
-Cost costOfUnits(const std::function<void(const Resume&)>& part, CostProbe& probe,
+Cost costOfUnits(const std::function<void(const Resume&)>& part, CostTrial& trial,
                  const UnitsToTry& units) {
   constexpr uint64_t kNone = uint64_t{1} << 40;  // more parts than any work has units
-  const double startS = cpuSecondsSoFar() + probe.skippedCpuS();
-  const double setupS = tryUnits(part, {kNone - 1, kNone, kNone}, probe, units.apart).cpuS;
+  const double startS = cpuSecondsSoFar() + trial.skippedCpuS();
+  const double setupS = tryUnits(part, {kNone - 1, kNone, kNone}, trial, units.apart).cpuS;
   // Results that the first run keeps for all others count once, in setupS.
   const double begunS = cpuSecondsSoFar();
-  const Probe base = tryUnits(part, {kNone - 1, kNone, kNone}, probe, units.apart);
+  const TriedUnits base = tryUnits(part, {kNone - 1, kNone, kNone}, trial, units.apart);
   const double baseS = cpuSecondsSoFar() - begunS, enoughS = std::max(kMinCpuS, 0.5 * baseS);
   // The first units may include preparations. The cost of a unit is therefore the slope between two
-  // probes that ran some units.
-  Probe fewer{base.cpuS, 0.0};
+  // trials that ran some units.
+  TriedUnits fewer{base.cpuS, 0.0};
   double fewerShare = 0.0;
   for (double parts = 4096.0;;) {
     const Shard shard = parts > 1.0 ? middleOf(parts) : Shard{};
-    const double beforeS = cpuSecondsSoFar(), leftOutS = probe.skippedCpuS();
-    const Probe some = tryUnits(part, shard, probe, units.apart);
+    const double beforeS = cpuSecondsSoFar(), leftOutS = trial.skippedCpuS();
+    const TriedUnits some = tryUnits(part, shard, trial, units.apart);
     const double ownS = cpuSecondsSoFar() - beforeS - baseS,  // CPU time of the units
         leftS = kMaxCpuS - (cpuSecondsSoFar() - begunS) - baseS;
     const double share = 1.0 / static_cast<double>(shard.of);
@@ -117,7 +117,7 @@ Cost costOfUnits(const std::function<void(const Resume&)>& part, CostProbe& prob
       const double workS = std::max(0.0, some.cpuS - fewer.cpuS) / (share - fewerShare);
       const double firstS = std::max(0.0, some.cpuS - workS * share - base.cpuS);
       const bool sure = some.units >= units.fewest && ownS >= 0.2 * enoughS;
-      const double done = 1.0 - (probe.skippedCpuS() - leftOutS) / std::max(some.cpuS, 1e-9);
+      const double done = 1.0 - (trial.skippedCpuS() - leftOutS) / std::max(some.cpuS, 1e-9);
       return {bytesIn("VmHWM"), startS + setupS + firstS, workS, share * done,
               sure || shard.whole()};
     }
@@ -137,7 +137,7 @@ Cost costOfUnits(const std::function<void(const Resume&)>& part, CostProbe& prob
 Cost costOfRows(uint64_t rows, uint64_t first, const std::function<void(uint64_t)>& part,
                 const std::function<double(uint64_t)>& growth) {
   const double startS = cpuSecondsSoFar();
-  double fewerS = 0.0, fewer = 0.0;  // CPU seconds and growth of the previous probe
+  double fewerS = 0.0, fewer = 0.0;  // CPU seconds and growth of the previous trial
   for (uint64_t some = std::min(rows, first);; some = std::min(rows, 4 * some)) {
     const MemoryWatch memory;
     const double before = cpuSecondsSoFar();

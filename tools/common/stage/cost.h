@@ -4,7 +4,7 @@
 #include <functional>
 #include <optional>
 
-#include "core/cost_probe.h"
+#include "core/cost_trial.h"
 #include "core/resume.h"
 #include "tools/common/run/run_tool.h"
 
@@ -47,8 +47,8 @@ struct UnitsToTry {
 };
 // Estimates work that consists of units. `part` does the units of resume.shard: first none, then
 // more and more, until their CPU time stands out from the rest or reaches seconds. Preparations
-// that use resume.probe count in full.
-Cost costOfUnits(const std::function<void(const Resume&)>& part, CostProbe& probe,
+// that use resume.trial count in full.
+Cost costOfUnits(const std::function<void(const Resume&)>& part, CostTrial& trial,
                  const UnitsToTry& units = {});
 
 // Estimates work on rows. `part` does it for a number of rows: `first`, then more and more, until

@@ -70,7 +70,7 @@ class StageRun {
   void checkFiles();
   void filesReady(const std::vector<fs::path>& sceneFiles);
 
-  // Prints the cost of the request, or of its shard. `counting` names the units of the probe.
+  // Prints the cost of the request, or of its shard. `counting` names the units of the trial.
   int tell(const std::string& counting, const std::function<Cost(const ProgressFn&)>& cost) const;
   // Does the work, and replaces the outputs together. Returns kExitOk.
   int make(const StageWork& work);

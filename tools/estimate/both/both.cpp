@@ -43,10 +43,10 @@ constexpr uint64_t kMinPoints = 2, kMaxPoints = 32;
 constexpr double kMaxPilotShare = 0.25;
 // Less indirect light than this share of the light in view is treated as this share.
 constexpr double kMinIndirectShare = 0.05;
-// Limits of a cost probe (--estimate): photons and paths of the pilots, VPLs of the split, and
+// Limits of a cost trial (--estimate): photons and paths of the pilots, VPLs of the split, and
 // points per VPL after it.
-constexpr uint64_t kProbePhotons = 1 << 18, kProbeVpls = 8192;
-constexpr double kProbePaths = 1 << 18, kProbePoints = 8.0;
+constexpr uint64_t kTrialPhotons = 1 << 18, kTrialVpls = 8192;
+constexpr double kTrialPaths = 1 << 18, kTrialPoints = 8.0;
 constexpr uint64_t kPhotonsOfUnit = 4096, kVplsOfUnit = 16, kMinUnits = 256;
 // Phases that shards divide. The phases before them are the pilots.
 constexpr size_t kPhotonPhase = 2, kPathPhase = 3;
@@ -78,14 +78,14 @@ class Estimator {
   EstimateResult run() {
     in_.lights.requirePower();
     emission_ = learnPhotonEmission(in_, options_, maxBounces(), work_);
-    const Split split = in_.resume.probe    ? splitOfProbe()
+    const Split split = in_.resume.trial    ? splitOfTrial()
                         : in_.resume.source ? takeSplit(*in_.resume.source, in_.vpls.size())
                                             : pilot();
     if (in_.resume.sink && in_.resume.shard.has(0)) giveSplit(*in_.resume.sink, split);
-    // A cost probe traces about as many units of photons as of paths, so that any part of it has
+    // A cost trial traces about as many units of photons as of paths, so that any part of it has
     // both.
     const uint64_t sent =
-        unitsToTry(in_.resume.probe, split.photons,
+        unitsToTry(in_.resume.trial, split.photons,
                    kPhotonsOfUnit * std::max(kMinUnits, in_.vpls.size() / kVplsOfUnit));
     const PhotonWork photons =
         trace(kPhotonPhase, Stream::Photons, sent, split.share,
@@ -164,13 +164,13 @@ class Estimator {
         [](const PathResult& result) { return finishedState(result); });
   }
 
-  // A cost probe takes fewer points, in proportion; the rounding remainder goes to the next VPL.
+  // A cost trial takes fewer points, in proportion; the rounding remainder goes to the next VPL.
   PathResult gatherPaths(const Split& split) {
     std::vector<uint64_t> points = split.points;
     double all = 0.0, few = 0.0, left = 0.0;
     for (const uint64_t n : points) all += static_cast<double>(n);
-    const double most = kProbePoints * static_cast<double>(points.size());
-    const double share = in_.resume.probe && all > most ? most / all : 1.0;
+    const double most = kTrialPoints * static_cast<double>(points.size());
+    const double share = in_.resume.trial && all > most ? most / all : 1.0;
     for (uint64_t& n : points) {
       left += share * static_cast<double>(n);
       n = share < 1.0 ? static_cast<uint64_t>(left) : n;
@@ -187,17 +187,17 @@ class Estimator {
   }
   unsigned maxBounces() const { return static_cast<unsigned>(options_[kMaxBouncesOption]); }
 
-  // The parts of a cost probe share one split.
-  const Split& splitOfProbe() {
-    std::any& kept = in_.resume.probe->kept;
+  // The parts of a cost trial share one split.
+  const Split& splitOfTrial() {
+    std::any& kept = in_.resume.trial->kept;
     if (!kept.has_value()) kept = pilot();
     return std::any_cast<const Split&>(kept);
   }
 
   Split pilot() {
-    CostProbe* const probe = in_.resume.probe;
+    CostTrial* const trial = in_.resume.trial;
     const auto few = static_cast<uint64_t>(std::ceil(kPilot * static_cast<double>(work_)));
-    const uint64_t sent = unitsToTry(probe, few, kProbePhotons);
+    const uint64_t sent = unitsToTry(trial, few, kTrialPhotons);
     const PhotonWork photons = trace(0, Stream::PilotPhotons, sent, {},
                                      static_cast<double>(few) / static_cast<double>(sent));
     if (sent < few) reported_ = few;
@@ -213,9 +213,9 @@ class Estimator {
     if (guess * kMinPoints > kMaxPilotShare * whole) return photonsAlone(work_ - reported_);
     const uint64_t points =
         std::clamp<uint64_t>(static_cast<uint64_t>(kPilot * whole / guess), kMinPoints, kMaxPoints);
-    // A cost probe measures every `step`-th VPL, which represents those that follow it in the file.
+    // A cost trial measures every `step`-th VPL, which represents those that follow it in the file.
     const double pathsOf = vpls * static_cast<double>(points * options_[kPathsOption]);
-    const auto step = static_cast<size_t>(probe ? std::ceil(pathsOf / kProbePaths) : 1.0);
+    const auto step = static_cast<size_t>(trial ? std::ceil(pathsOf / kTrialPaths) : 1.0);
     std::vector<uint64_t> pointsOf(in_.vpls.size(), 0);
     for (size_t i = 0; i < pointsOf.size(); i += step) pointsOf[i] = points;
     const std::vector<PathSums> some =
@@ -223,7 +223,7 @@ class Estimator {
     std::vector<PathSums> paths(some.size());
     for (size_t i = 0; i < paths.size(); ++i) paths[i] = some[i - i % step];
     pilots.points = static_cast<double>(points);
-    double spent = pilots.photonCost * (probe ? static_cast<double>(few) : pilots.photons);
+    double spent = pilots.photonCost * (trial ? static_cast<double>(few) : pilots.photons);
     for (size_t i = 0; i < in_.vpls.size(); ++i) {
       const VplSum& s = photons.sums.vpl[i];
       pilots.byPhotons.push_back(
@@ -235,16 +235,16 @@ class Estimator {
     }
     const Budget budget{std::max(whole - spent, 0.5 * whole), irradianceError()};
     const Split split =
-        probe ? splitOfSubset(pilots, budget) : splitWork(in_.vpls, in_.rays, pilots, budget);
+        trial ? splitOfSubset(pilots, budget) : splitWork(in_.vpls, in_.rays, pilots, budget);
     progressScale_ = static_cast<double>(work_ - reported_) * pilots.photonCost / split.cost;
     return split;
   }
 
-  // Split for a cost probe, from every `step`-th VPL, which represents those that follow it. A
+  // Split for a cost trial, from every `step`-th VPL, which represents those that follow it. A
   // photon serves all VPLs, so its cost is divided by `step`; the irradiance from fewer VPLs has a
   // larger error.
   Split splitOfSubset(Pilots pilots, Budget budget) const {
-    const size_t count = in_.vpls.size(), step = (count + kProbeVpls - 1) / kProbeVpls;
+    const size_t count = in_.vpls.size(), step = (count + kTrialVpls - 1) / kTrialVpls;
     const auto times = static_cast<double>(step);
     std::vector<uint32_t> rows;
     for (size_t i = 0; i < count; i += step) rows.push_back(static_cast<uint32_t>(i));
@@ -256,7 +256,7 @@ class Estimator {
     keep(pilots.byPaths);
     keep(pilots.pointCost);
     pilots.photonCost /= times;
-    const CostProbe::Part part(in_.resume.probe, times);
+    const CostTrial::Part part(in_.resume.trial, times);
     const Split some = splitWork(keepRows(in_.vpls, rows), in_.rays, pilots,
                                  {budget.cost / times, budget.error * std::sqrt(times)});
     Split split = some;

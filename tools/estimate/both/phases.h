@@ -32,7 +32,7 @@ class Phases {
                   states_[k] = state;
                   whole_.save(encoded());
                 }};
-    part.probe = whole_.probe;
+    part.trial = whole_.trial;
     part.times = times;
     if (k >= kFirstShared)
       part.shard = whole_.shard, part.sink = whole_.sink, part.source = whole_.source;

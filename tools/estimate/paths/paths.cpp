@@ -24,10 +24,10 @@ constexpr auto kOptions =
 EstimateResult make(const EstimateInputs& in, const Values& options) {
   in.lights.requirePower();
   const auto spatialLights = makeSpatialLightSampler(in, options[kSeedOption]);
-  // A cost probe (--estimate) takes fewer points and paths.
-  CostProbe* const probe = in.resume.probe;
-  const uint64_t each = options[kPointsOption], fewPoints = unitsToTry(probe, each, 8),
-                 paths = options[kPathsOption], fewPaths = unitsToTry(probe, paths, 8);
+  // A cost trial (--estimate) takes fewer points and paths.
+  CostTrial* const trial = in.resume.trial;
+  const uint64_t each = options[kPointsOption], fewPoints = unitsToTry(trial, each, 8),
+                 paths = options[kPathsOption], fewPaths = unitsToTry(trial, paths, 8);
   const VplPaths gatherer(
       in, {streamKey(options[kSeedOption], Stream::VplPaths), fewPaths,
            static_cast<unsigned>(options[kMaxBouncesOption]), options.real32(kRadiusOption),

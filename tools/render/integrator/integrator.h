@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "core/cost_probe.h"
+#include "core/cost_trial.h"
 #include "core/progress.h"
 #include "formats/vpl/vpl_table.h"
 #include "tools/common/stage/method.h"
@@ -26,13 +26,13 @@ struct IntegratorInputs {
   Only only;
   PixelFilter filter;
   const ProgressFn& progress;  // reports preparations
-  CostProbe* probe = nullptr;  // set for a cost estimate
+  CostTrial* trial = nullptr;  // set for a cost estimate
   uint32_t groups = 0;         // light groups that samples tell apart; 0: none
   VplGroups litGroups = {};    // the VPLs' flux by these groups; empty without them
 
   uint64_t pixels() const {
     const Film& film = rays.scene().film;
-    return probe ? probe->pixels : uint64_t{film.width} * film.height;
+    return trial ? trial->pixels : uint64_t{film.width} * film.height;
   }
 };
 

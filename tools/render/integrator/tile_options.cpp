@@ -13,7 +13,7 @@ void addDirectLight(const IntegratorInputs& in, const Values& options, const Fil
     out.lightRays = lightRays;
     out.lights = std::make_unique<const TileLightSampler>(
         in.rays, in.lights, [filmRays](size_t pixel) { return filmRays.point(pixel); }, raysOfTile,
-        in.seed, in.probe);
+        in.seed, in.trial);
     out.visibleEmission =
         std::make_unique<const VisibleEmission>(in.rays, in.lights, in.filter, film);
   }
@@ -29,9 +29,9 @@ std::unique_ptr<const Caustics> makeCaustics(const IntegratorInputs& in, uint64_
       !in.lights.hasPower()) {
     return {};
   }
-  constexpr uint64_t kProbePhotons = 1 << 18;  // limit for a cost estimate
-  const uint64_t sent = unitsToTry(in.probe, photons, kProbePhotons);
-  const CostProbe::Part part(in.probe, static_cast<double>(photons) / static_cast<double>(sent));
+  constexpr uint64_t kTrialPhotons = 1 << 18;  // limit for a cost estimate
+  const uint64_t sent = unitsToTry(in.trial, photons, kTrialPhotons);
+  const CostTrial::Part part(in.trial, static_cast<double>(photons) / static_cast<double>(sent));
   return std::make_unique<const Caustics>(in.rays, in.lights, in.filter, sent,
                                           static_cast<float>(raysOfPixel), bounces, in.seed,
                                           in.groups, in.progress);

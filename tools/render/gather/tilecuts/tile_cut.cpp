@@ -12,13 +12,13 @@ namespace bnvpl {
 namespace {
 
 // Number of receivers that represent the tile when its cut is chosen.
-constexpr uint32_t kProbes = 8;
-using Probes = std::array<const Bsdf*, kProbes>;
-// Occluded light counts by this share at a probe, so that a tile whose probes are dark is not
-// refined down to single VPLs.
+constexpr uint32_t kSampleReceivers = 8;
+using SampleReceivers = std::array<const Bsdf*, kSampleReceivers>;
+// Occluded light counts by this share at a sample receiver, so that a tile whose receivers are dark
+// is not refined down to single VPLs.
 constexpr float kBlockedShare = 0.01f;
-// Lower bound of the light at a probe, over the mean of all probes.
-constexpr float kMinProbeLight = 0.2f;
+// Lower bound of the light at a sample receiver, over the mean of all.
+constexpr float kMinReceiverLight = 0.2f;
 // Factor of the predicted variance when it is compared with the marginal cost. The measured
 // variance is a sixteenth of the prediction (theory.md), but sixteen pixels share the error, which
 // is visible as grain.
@@ -26,15 +26,16 @@ constexpr double kVarianceShare = 0.5;
 // Russian roulette on small contributions may add this share to the allowed variance.
 constexpr float kRouletteShare = 0.5f;
 
-// The probes as a structure of arrays.
-struct ProbeLanes {
-  alignas(32) std::array<float, kProbes> x{}, y{}, z{}, nx{}, ny{}, nz{}, red{}, green{}, blue{};
-  alignas(32) std::array<float, kProbes> perLight{};  // 1 over the light at the probe, or 0
+// The sample receivers as a structure of arrays.
+struct ReceiverLanes {
+  alignas(32) std::array<float, kSampleReceivers> x{}, y{}, z{}, nx{}, ny{}, nz{}, red{}, green{},
+      blue{};
+  alignas(32) std::array<float, kSampleReceivers> perLight{};  // 1 over the light at it, or 0
 
-  ProbeLanes(const Probes& probes, const std::array<float, kProbes>& light) {
-    for (size_t k = 0; k < kProbes; ++k) {
-      const Vec3 p = probes[k]->point().position, n = probes[k]->point().ns,
-                 r = maxReflected(*probes[k]);
+  ReceiverLanes(const SampleReceivers& sample, const std::array<float, kSampleReceivers>& light) {
+    for (size_t k = 0; k < kSampleReceivers; ++k) {
+      const Vec3 p = sample[k]->point().position, n = sample[k]->point().ns,
+                 r = maxReflected(*sample[k]);
       x[k] = p.x, y[k] = p.y, z[k] = p.z;
       nx[k] = n.x, ny[k] = n.y, nz[k] = n.z;
       red[k] = r.x, green[k] = r.y, blue[k] = r.z;
@@ -42,7 +43,7 @@ struct ProbeLanes {
     }
   }
 
-  // Relative variance of a cluster, summed over the probes.
+  // Relative variance of a cluster, summed over the sample receivers.
   float variance(const LightNode& n) const {
     if (n.leaf()) return 0.0f;
     return withKind(n.kind, [&](auto kind) { return varianceOf<decltype(kind)>(n); });
@@ -52,8 +53,8 @@ struct ProbeLanes {
   template <typename Kind>
   float varianceOf(const LightNode& n) const {
     const DeviationModel<Kind> expected(n);
-    alignas(32) std::array<float, kProbes> squares;
-    for (size_t k = 0; k < kProbes; ++k) {
+    alignas(32) std::array<float, kSampleReceivers> squares;
+    for (size_t k = 0; k < kSampleReceivers; ++k) {
       const float d =
           expected.at({x[k], y[k], z[k]}, {nx[k], ny[k], nz[k]}, {red[k], green[k], blue[k]})
               .deviation *
@@ -65,28 +66,29 @@ struct ProbeLanes {
 };
 
 // Random receivers of the tile; all are null if there are none.
-Probes chooseProbes(const TileReceivers& tile) {
+SampleReceivers chooseReceivers(const TileReceivers& tile) {
   std::vector<const Bsdf*> receivers;
   for (const Bsdf* b : tile.bsdf) {
     if (b) receivers.push_back(b);
   }
-  Probes probes{};
-  for (uint32_t k = 0; k < kProbes && !receivers.empty(); ++k) {
-    probes[k] = receivers[random64(tile.key, k, kDimProbe) % receivers.size()];
+  SampleReceivers sample{};
+  for (uint32_t k = 0; k < kSampleReceivers && !receivers.empty(); ++k) {
+    sample[k] = receivers[random64(tile.key, k, kDimReceiver) % receivers.size()];
   }
-  return probes;
+  return sample;
 }
 
-// Estimates the light at each probe by one VPL of each cluster of the start cut, with shadow rays.
-// Probes represent their neighbours, too, and single draws are noisy. So each value is replaced by
-// its geometric mean with that of all probes, which is less influenced by bright ones than the
-// mean.
-std::array<float, kProbes> lightAt(const RayScene& rays, const VplLights& vpls,
-                                   const LightTree& tree, const Probes& probes, uint64_t key) {
-  std::array<float, kProbes> light{};
+// Estimates the light at each sample receiver by one VPL of each cluster of the start cut, with
+// shadow rays. The receivers represent their neighbours, too, and single draws are noisy. So each
+// value is replaced by its geometric mean with that of all, which is less influenced by bright ones
+// than the mean.
+std::array<float, kSampleReceivers> lightAt(const RayScene& rays, const VplLights& vpls,
+                                            const LightTree& tree, const SampleReceivers& sample,
+                                            uint64_t key) {
+  std::array<float, kSampleReceivers> light{};
   uint32_t draw = 0;
-  for (size_t k = 0; k < kProbes; ++k) {
-    const Bsdf& b = *probes[k];
+  for (size_t k = 0; k < kSampleReceivers; ++k) {
+    const Bsdf& b = *sample[k];
     const Vec3 from = rays.offsetOrigin(b.point().position, b.point().ng);
     for (const uint32_t node : tree.startCut) {
       const LightNode& n = tree.nodes[node];
@@ -98,12 +100,12 @@ std::array<float, kProbes> lightAt(const RayScene& rays, const VplLights& vpls,
       light[k] += (part.x + part.y + part.z) * (blocked ? kBlockedShare : 1.0f);
     }
   }
-  constexpr auto kCount = static_cast<float>(kProbes);
+  constexpr auto kCount = static_cast<float>(kSampleReceivers);
   const float mean = std::accumulate(light.begin(), light.end(), 0.0f) / kCount;
   if (!(mean > 0.0f)) return light;
   float logarithms = 0.0f;
   for (float& l : light) {
-    l = std::max(l, kMinProbeLight * mean);
+    l = std::max(l, kMinReceiverLight * mean);
     logarithms += std::log(l);
   }
   const float typical = std::exp(logarithms / kCount);
@@ -113,12 +115,12 @@ std::array<float, kProbes> lightAt(const RayScene& rays, const VplLights& vpls,
 
 }  // namespace
 
-// Refines the cluster with the largest variance, summed over the probes, until the sum over all
-// clusters is as small as the samples of a pixel require.
+// Refines the cluster with the largest variance, summed over the sample receivers, until the sum
+// over all clusters is as small as the samples of a pixel require.
 TileCut chooseTileCut(const RayScene& rays, const VplLights& vpls, const LightTree& tree,
                       const TileCutOptions& options, const TileReceivers& tile) {
-  const Probes probes = chooseProbes(tile);
-  if (!probes[0]) return {};
+  const SampleReceivers sample = chooseReceivers(tile);
+  if (!sample[0]) return {};
   struct Open {
     float variance;
     uint32_t node;
@@ -126,20 +128,21 @@ TileCut chooseTileCut(const RayScene& rays, const VplLights& vpls, const LightTr
       return variance != o.variance ? variance < o.variance : node < o.node;
     }
   };
-  std::array<float, kProbes> light = lightAt(rays, vpls, tree, probes, tile.key);
+  std::array<float, kSampleReceivers> light = lightAt(rays, vpls, tree, sample, tile.key);
   for (float& l : light) {
     l += tile.otherLight;
     if (l > tile.medianTileLight)
       l = std::sqrt(l * tile.medianTileLight);  // see SampleAllocation::relative
   }
-  const ProbeLanes all(probes, light);
+  const ReceiverLanes all(sample, light);
   TileCut cut;
   const double maxVarianceSum = double{options.error} * double{options.error} *
-                                double(tile.samplesPerPixel) * double{kProbes};
+                                double(tile.samplesPerPixel) * double{kSampleReceivers};
   // Refining a cluster halves its variance, about, and costs a ray.
-  const double minVarianceToRefine = 2.0 * tile.marginalCost * double{kProbes} / kVarianceShare;
+  const double minVarianceToRefine =
+      2.0 * tile.marginalCost * double{kSampleReceivers} / kVarianceShare;
   const auto allowedVariance =
-      static_cast<float>(std::max(maxVarianceSum, minVarianceToRefine) / double{kProbes});
+      static_cast<float>(std::max(maxVarianceSum, minVarianceToRefine) / double{kSampleReceivers});
   const float darkest = *std::min_element(light.begin(), light.end());
   cut.allowedDeviation = std::sqrt(allowedVariance) * darkest;
   // Tracing a ray of contribution c with probability q adds the variance c^2 (1/q - 1). At the

@@ -94,7 +94,8 @@ bool exceedsAnywhere(const LightNode& n, float allowed, const ReceiverPacket& p)
   return exceeds != 0;
 }
 // Whether a cluster of the tile's cut must be refined for a packet, because it is much nearer to
-// one of its receivers than to the probes: its deviation alone would exceed the allowed one.
+// one of its receivers than to the sample receivers: its deviation alone would exceed the allowed
+// one.
 bool tooNear(const LightNode& n, float allowed, const ReceiverPacket& p) {
   if (n.leaf() || surelyFar(n, allowed, p.bounds, p.brightest)) return false;
   return withKind(n.kind,

@@ -74,8 +74,8 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   if (options.has(kPathsOption)) {
     tile.raysEach = static_cast<unsigned>(options[kPathsOption]);
     const uint64_t each = raysEach(in, options),
-                   few = unitsToTry(in.probe, each, std::max<uint64_t>(64, kProbeRays / vpls));
-    const CostProbe::Part part(in.probe, static_cast<double>(std::max<uint64_t>(1, each)) /
+                   few = unitsToTry(in.trial, each, std::max<uint64_t>(64, kProbeRays / vpls));
+    const CostTrial::Part part(in.trial, static_cast<double>(std::max<uint64_t>(1, each)) /
                                              static_cast<double>(std::max<uint64_t>(1, few)));
     tile.rays = std::make_unique<const GuidedRays>(
         in.rays, in.lights, Guide(in.lit, in.rays, in.lights, in.seed, few, in.progress),

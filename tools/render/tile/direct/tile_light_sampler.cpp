@@ -9,20 +9,20 @@ namespace bnvpl {
 
 namespace {
 
-constexpr size_t kMaxProbes = 16;   // for each stratum; those of the tiles around add to them
+constexpr size_t kMaxRaysEach = 16;  // for each stratum; those of the tiles around add to them
 constexpr size_t kFilmTiles = 256;  // tiles, evenly spaced, whose mean stands for the film
 
 }  // namespace
 
 TileLightSampler::TileLightSampler(const RayScene& rays, const LightSet& lights,
                                    std::function<SurfacePoint(size_t pixel)> shadingPoint,
-                                   uint64_t raysOfTile, uint64_t seed, CostProbe* cost)
+                                   uint64_t raysOfTile, uint64_t seed, CostTrial* cost)
     : rays_(rays),
       lights_(lights),
       shadingPoint_(std::move(shadingPoint)),
       strata_(lights),
-      probes_(std::clamp<uint64_t>(raysOfTile / 2 / std::max<size_t>(1, strata_.size()), 1,
-                                   kMaxProbes)),
+      raysEach_(std::clamp<uint64_t>(raysOfTile / 2 / std::max<size_t>(1, strata_.size()), 1,
+                                     kMaxRaysEach)),
       key_(streamKey(seed, Stream::TileLightSampler)),
       tilesX_((rays.scene().film.width + kTileSide - 1) / kTileSide),
       tilesY_((rays.scene().film.height + kTileSide - 1) / kTileSide),
@@ -34,10 +34,10 @@ TileLightSampler::TileLightSampler(const RayScene& rays, const LightSet& lights,
   everywhere_ = meanOf(some, strata_.size());
 }
 
-const StrataValues& TileLightSampler::probe(size_t tile) const {
+const StrataValues& TileLightSampler::estimate(size_t tile) const {
   Tile& t = tiles_[tile];
-  std::call_once(t.probed, [&] {
-    const CostProbe::Unit part(cost_, cost_ ? cost_->partOfShared(9.0) : 1.0);
+  std::call_once(t.estimated, [&] {
+    const CostTrial::Unit part(cost_, cost_ ? cost_->partOfShared(9.0) : 1.0);
     const Film& film = rays_.scene().film;
     const auto x0 = static_cast<uint32_t>(tile % tilesX_) * kTileSide,
                y0 = static_cast<uint32_t>(tile / tilesX_) * kTileSide;
@@ -52,7 +52,7 @@ const StrataValues& TileLightSampler::probe(size_t tile) const {
       if (p.triangle != kNone) bsdfs.emplace_back(rays_.scene(), p);
     }
     Rng rng(key_, tile);
-    t.found = probeStrata(rays_, lights_, strata_, bsdfs, probes_, rng);
+    t.found = estimateStrata(rays_, lights_, strata_, bsdfs, raysEach_, rng);
   });
   return t.found;
 }
@@ -61,10 +61,10 @@ const StrataValues& TileLightSampler::learn(size_t tile) const {
   Tile& t = tiles_[tile];
   std::call_once(t.learned, [&] {
     const size_t x = tile % tilesX_, y = tile / tilesX_;
-    PooledProbes sum(strata_.size());
+    PooledStrata sum(strata_.size());
     for (size_t j = y > 0 ? y - 1 : 0; j < std::min(tilesY_, y + 2); ++j) {
       for (size_t i = x > 0 ? x - 1 : 0; i < std::min(tilesX_, x + 2); ++i)
-        sum.add(probe(j * tilesX_ + i));
+        sum.add(estimate(j * tilesX_ + i));
     }
     t.light = sum.distribution();
   });

@@ -6,9 +6,9 @@
 #include <mutex>
 #include <vector>
 
-#include "core/cost_probe.h"
+#include "core/cost_trial.h"
 #include "tools/render/gather/gather.h"
-#include "transport/light_probes.h"
+#include "transport/strata_pilot.h"
 
 namespace bnvpl {
 
@@ -19,29 +19,29 @@ class TileLightSampler {
   // estimate. Borrows rays and lights.
   TileLightSampler(const RayScene& rays, const LightSet& lights,
                    std::function<SurfacePoint(size_t pixel)> shadingPoint, uint64_t raysOfTile,
-                   uint64_t seed, CostProbe* cost = nullptr);
+                   uint64_t seed, CostTrial* cost = nullptr);
 
   // Distribution of the tile that contains the pixel. Thread-safe.
   LearnedStrata at(uint32_t x, uint32_t y) const;
 
  private:
   struct Tile {
-    std::once_flag probed, learned;
-    StrataValues found;  // from the tile's own probes
-    StrataValues light;  // from the probes of the 3 x 3 tiles around
+    std::once_flag estimated, learned;
+    StrataValues found;  // from the tile's own rays
+    StrataValues light;  // from the rays of the 3 x 3 tiles around
   };
 
-  const StrataValues& probe(size_t tile) const;
+  const StrataValues& estimate(size_t tile) const;
   const StrataValues& learn(size_t tile) const;
 
   const RayScene& rays_;
   const LightSet& lights_;
   std::function<SurfacePoint(size_t pixel)> shadingPoint_;
   LightStrata strata_;
-  size_t probes_;  // for each stratum
+  size_t raysEach_;  // for each stratum
   uint64_t key_;
   size_t tilesX_, tilesY_;
-  CostProbe* cost_;
+  CostTrial* cost_;
   mutable std::vector<Tile> tiles_;
   StrataValues everywhere_;
 };

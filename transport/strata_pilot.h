@@ -9,16 +9,16 @@
 
 namespace bnvpl {
 
-// Sends `probes` shadow rays to each stratum, each from a random one of the vertices. Returns the
+// Sends `raysEach` shadow rays to each stratum, each from a random one of the vertices. Returns the
 // strata with a contribution, and the mean square of the estimate that samples only this stratum.
-StrataValues probeStrata(const RayScene& rays, const LightSet& lights, const LightStrata& strata,
-                         std::span<const Bsdf> vertices, size_t probes, Rng& rng);
+StrataValues estimateStrata(const RayScene& rays, const LightSet& lights, const LightStrata& strata,
+                            std::span<const Bsdf> vertices, size_t raysEach, Rng& rng);
 
 // Pools the mean squares of several places. The variance of a sum of estimates is minimal if each
 // is sampled in proportion to the root of its mean square.
-class PooledProbes {
+class PooledStrata {
  public:
-  explicit PooledProbes(size_t strata) : sum_(strata) {}
+  explicit PooledStrata(size_t strata) : sum_(strata) {}
   void add(const StrataValues& found);
   StrataValues distribution() const;
 

@@ -1,4 +1,4 @@
-#include "transport/light_probes.h"
+#include "transport/strata_pilot.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,13 +7,13 @@
 
 namespace bnvpl {
 
-StrataValues probeStrata(const RayScene& rays, const LightSet& lights, const LightStrata& strata,
-                         std::span<const Bsdf> vertices, size_t probes, Rng& rng) {
+StrataValues estimateStrata(const RayScene& rays, const LightSet& lights, const LightStrata& strata,
+                            std::span<const Bsdf> vertices, size_t raysEach, Rng& rng) {
   StrataValues out;
   if (vertices.empty()) return out;
   for (uint32_t s = 0; s < strata.size(); ++s) {
     float sum = 0.0f;
-    for (size_t k = 0; k < probes; ++k) {
+    for (size_t k = 0; k < raysEach; ++k) {
       const auto which = static_cast<size_t>(rng.next() * static_cast<float>(vertices.size()));
       const Bsdf& bsdf = vertices[std::min(which, vertices.size() - 1)];
       const float u = rng.next(), v = rng.next();
@@ -28,16 +28,16 @@ StrataValues probeStrata(const RayScene& rays, const LightSet& lights, const Lig
     }
     if (!(sum > 0.0f) || !std::isfinite(sum)) continue;
     out.strata.push_back(s);
-    out.values.push_back(sum / static_cast<float>(probes));
+    out.values.push_back(sum / static_cast<float>(raysEach));
   }
   return out;
 }
 
-void PooledProbes::add(const StrataValues& found) {
+void PooledStrata::add(const StrataValues& found) {
   for (size_t k = 0; k < found.strata.size(); ++k) sum_[found.strata[k]] += found.values[k];
 }
 
-StrataValues PooledProbes::distribution() const {
+StrataValues PooledStrata::distribution() const {
   std::vector<float> roots = sum_;
   for (float& v : roots) v = std::sqrt(v);
   return distributionOf(roots);

@@ -1,4 +1,4 @@
-// --estimate runs a part of the work to predict the cost of all of it. A CostProbe tells long
+// --estimate runs a part of the work to predict the cost of all of it. A CostTrial tells long
 // preparations that a part of them is enough, and counts the CPU time of the rest.
 #pragma once
 
@@ -12,16 +12,16 @@
 
 namespace bnvpl {
 
-class CostProbe {
+class CostTrial {
  public:
   // `cpuS`: CPU seconds of this process so far.
-  explicit CostProbe(std::function<double()> cpuS) : cpuS_(std::move(cpuS)) {}
+  explicit CostTrial(std::function<double()> cpuS) : cpuS_(std::move(cpuS)) {}
 
   // CPU time that preparations and units left out would have taken.
   double skippedCpuS() const { return skippedCpuS_; }
   // Results of the preparations, kept for the next part of the same work.
   std::any kept;
-  // Pixels of the whole film; a probe may render a smaller one.
+  // Pixels of the whole film; a trial may render a smaller one.
   uint64_t pixels = 0;
   // Share of the units that this part does; 1 if the shards of the work share no units.
   double share = 1.0;
@@ -37,12 +37,12 @@ class CostProbe {
   // Counts, for as long as it lives, one unit on one thread that stands for `times` such units.
   class [[nodiscard]] Unit {
    public:
-    Unit(CostProbe* probe, double times)
-        : probe_(times != 1.0 ? probe : nullptr), times_(times), beforeS_(probe_ ? threadS() : 0) {}
+    Unit(CostTrial* trial, double times)
+        : trial_(times != 1.0 ? trial : nullptr), times_(times), beforeS_(trial_ ? threadS() : 0) {}
     Unit(const Unit&) = delete;
     Unit& operator=(const Unit&) = delete;
     ~Unit() {
-      if (probe_) probe_->skippedCpuS_ += (times_ - 1.0) * (threadS() - beforeS_);
+      if (trial_) trial_->skippedCpuS_ += (times_ - 1.0) * (threadS() - beforeS_);
     }
 
    private:
@@ -51,24 +51,24 @@ class CostProbe {
       ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
       return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
     }
-    CostProbe* probe_;
+    CostTrial* trial_;
     double times_, beforeS_;
   };
-  // Counts, for as long as it lives, a part of work that would take `times` as long. `probe` may be
+  // Counts, for as long as it lives, a part of work that would take `times` as long. `trial` may be
   // null.
   class [[nodiscard]] Part {
    public:
-    Part(CostProbe* probe, double times) : probe_(probe), times_(times) {
-      if (probe_) beforeS_ = probe_->cpuS_();
+    Part(CostTrial* trial, double times) : trial_(trial), times_(times) {
+      if (trial_) beforeS_ = trial_->cpuS_();
     }
     Part(const Part&) = delete;
     Part& operator=(const Part&) = delete;
     ~Part() {
-      if (probe_) probe_->skippedCpuS_ += (times_ - 1.0) * (probe_->cpuS_() - beforeS_);
+      if (trial_) trial_->skippedCpuS_ += (times_ - 1.0) * (trial_->cpuS_() - beforeS_);
     }
 
    private:
-    CostProbe* probe_;
+    CostTrial* trial_;
     double times_, beforeS_ = 0.0;
   };
 
@@ -77,9 +77,9 @@ class CostProbe {
   std::atomic<double> skippedCpuS_{0.0};
 };
 
-// The number of units that a preparation does: all `count` of them, or at most `few` for a probe.
-inline uint64_t unitsToTry(const CostProbe* probe, uint64_t count, uint64_t few) {
-  return probe && count > few ? few : count;
+// The number of units that a preparation does: all `count` of them, or at most `few` for a trial.
+inline uint64_t unitsToTry(const CostTrial* trial, uint64_t count, uint64_t few) {
+  return trial && count > few ? few : count;
 }
 
 }  // namespace bnvpl
