@@ -36,10 +36,10 @@ void chooseCamera(const std::string& nameOrIndex, Scene& scene) {
 void useViewFile(const fs::path& file, Scene& scene) {
   const toml::table root = parseToml(file);
   const TomlSection top(file, "view", root, {"film", "camera"});
-  const Camera& own = scene.views.empty() ? scene.camera : scene.views.front().camera;
+  const View own = scene.views.empty() ? View{"", scene.camera, scene.film} : scene.views.front();
   for (const char* section : {"film", "camera"}) tableOf(file, root, section);  // both must exist
-  const TomlView view = readTomlView(file, root, isMirrored(own));
-  scene.film = *view.film;
+  const TomlView view = readTomlView(file, root, isMirrored(own.camera));
+  scene.film = view.film->over(own.film);
   scene.camera = *view.camera;
   scene.camera.position = fromOrigin(view.position, scene.origin);
   if (std::find(scene.files.begin(), scene.files.end(), file) == scene.files.end())

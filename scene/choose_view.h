@@ -13,8 +13,8 @@ void chooseCamera(const std::string& nameOrIndex, Scene& scene);
 bool isMirrored(const Camera& camera);
 
 // Takes the view from a TOML file with [film] and [camera], in the coordinates of the scene file.
-// The default of its 'mirrored' is that of the scene's first camera. Adds the file to Scene::files.
-// Throws InputError.
+// The default of its 'mirrored' and of the film's keys is that of the scene's first camera. Adds
+// the file to Scene::files. Throws InputError.
 void useViewFile(const fs::path& file, Scene& scene);
 
 // Lists the cameras, such as "0 'Door', 1 'Window'".

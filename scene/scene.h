@@ -13,6 +13,7 @@
 
 #include "core/errors.h"
 #include "core/vec3.h"
+#include "scene/filter_spec.h"
 #include "scene/material.h"
 #include "scene/textures/expression.h"
 #include "scene/textures/texture.h"
@@ -24,6 +25,7 @@ struct Film {
   uint32_t width = 640, height = 480;  // pixels
   // Whether camera rays that leave the scene at once carry no light, for compositing.
   bool transparent = false;
+  FilterSpec filter = {};  // pixel filter of images; VPLs do not depend on it
 };
 
 // Limits of a lens, with which rays through it stay within floats.

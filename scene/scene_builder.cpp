@@ -22,9 +22,10 @@ SceneBuilder::SceneBuilder(fs::path sceneFile, OnWarning onWarning)
   scene_.files.push_back(std::move(sceneFile));
 }
 
-void SceneBuilder::setFilm(const Film& film, size_t first) {
-  if (!including()) scene_.film = film;
-  for (size_t i = first; i < scene_.views.size(); ++i) scene_.views[i].film = film;
+void SceneBuilder::changeFilm(const std::function<Film(const Film&)>& changed, size_t first) {
+  if (!including()) scene_.film = changed(scene_.film);
+  for (size_t i = first; i < scene_.views.size(); ++i)
+    scene_.views[i].film = changed(scene_.views[i].film);
 }
 
 void SceneBuilder::dropCameras(size_t first) {

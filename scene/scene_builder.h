@@ -53,8 +53,11 @@ class SceneBuilder {
   // `onWarning` at once, even if an error follows and no Scene results.
   explicit SceneBuilder(fs::path sceneFile, OnWarning onWarning = {});
 
-  // The film of all cameras from number `first` on, and of the scene if it has none.
-  void setFilm(const Film& film, size_t first = 0);
+  // Changes the film of all cameras from number `first` on, and of the scene if it has none.
+  void changeFilm(const std::function<Film(const Film&)>& changed, size_t first);
+  void setFilm(const Film& film) {
+    changeFilm([&](const Film&) { return film; }, 0);
+  }
   // The camera of a format that has one. finish() computes camera.position from `position`.
   void setCamera(const FilePoint& position, const Camera& camera);
   // Adds one of several cameras; the first is used unless the user chooses another. A scene without

@@ -82,6 +82,22 @@ TEST_F(SceneReport, TellsAndWritesTheLens) {
   EXPECT_EQ(sceneDifference(scene, copy), "camera or film");
 }
 
+TEST_F(SceneReport, TellsAndWritesThePixelFilter) {
+  writeTinyScene(at("."));
+  std::string toml = readAll(at("tiny.toml"));
+  writeAll(at("tiny.toml"),
+           toml.insert(toml.find("width"), "filter = \"gaussian\"\nfilter_radius = 1.7\n"));
+  const Outcome ok =
+      runInspect("scene --to-toml " + quoted(at("copy")) + " " + quoted(at("tiny.toml")));
+  EXPECT_NE(ok.output.find("filter gaussian, filter_radius 1.7"), std::string::npos) << ok.output;
+  Scene scene = loadScene(at("tiny.toml"));
+  const Scene copy = loadScene(at("copy/scene.toml"));
+  EXPECT_EQ(copy.film.filter, (FilterSpec{FilterKind::Gaussian, 1.7f}));
+  EXPECT_EQ(sceneDifference(scene, copy), "");
+  scene.film.filter.kind = FilterKind::Mitchell;
+  EXPECT_EQ(sceneDifference(scene, copy), "camera or film");
+}
+
 // A name may hold any bytes except those that end it.
 TEST_F(SceneReport, NamesThatAreNoUtf8OrHoldLineBreaksAreNames) {
   writeTinyScene(at("."));

@@ -1,6 +1,7 @@
 // Scene files written by other programs, and messages about those that lack something.
 #include <algorithm>
 
+#include "formats/image/exr_io.h"
 #include "formats/vpl/vpl_io.h"
 #include "tests/pipeline/tool_runner.h"
 #include "tools/common/run/exit_codes.h"
@@ -150,6 +151,38 @@ TEST_F(SceneFilesOfOthers, AnObjIsASceneOfItsOwn) {
   ASSERT_NE(cure, std::string::npos) << dark.err;
   ASSERT_EQ(std::system(dark.err.substr(cure).c_str()), 0);
   succeed("vpl-render", path("von Blender/my room-lit.toml") + image);
+}
+
+// The image depends on the filter, the VPLs do not.
+TEST_F(SceneFilesOfOthers, TheFilterOfTheFilmIsThatOfTheImage) {
+  std::string film = readAll(at("von Blender/my room.toml"));
+  film.insert(film.find("width"), "filter = \"gaussian\"\nfilter_radius = 2\n");
+  write("von Blender/soft.toml", film);
+  makeStages(room_);
+  const std::string soft = path("von Blender/soft.toml") + " " + path("lit.vpl"),
+                    plain = room_ + " " + path("lit.vpl");
+  const auto render = [&](const std::string& arguments, const std::string& name) {
+    succeed("vpl-render", arguments + " --spp 2 --quiet -o " + path(name));
+    return readExr(at(name));
+  };
+  const Image whole = render(soft, "soft.exr"), box = render(soft + " --filter box", "box.exr");
+  const Image asked = render(plain + " --filter gaussian --filter-radius 2", "asked.exr");
+  EXPECT_EQ(*whole.find("R"), *asked.find("R"));
+  EXPECT_EQ(*box.find("R"), *render(plain, "plain.exr").find("R"));
+  EXPECT_NE(*whole.find("R"), *box.find("R"));
+  EXPECT_EQ(*render(soft + " --filter-radius 1.25", "narrow.exr").find("R"),
+            *render(plain + " --filter gaussian --filter-radius 1.25", "asked2.exr").find("R"));
+  EXPECT_EQ(*render(soft + " --filter mitchell", "mitchell.exr").find("R"),
+            *render(plain + " --filter mitchell", "asked3.exr").find("R"));
+  for (const Image* image : {&whole, &asked})
+    EXPECT_TRUE(contains(image->attributes.at("bnvpl.provenance"), "\"filter\":\"gaussian\""));
+  for (const char* part : {"1", "2"})
+    succeed("vpl-render", soft + " --spp 2 --quiet --shard " + part + "/2 -o " +
+                              path(std::string(part) + ".shard"));
+  succeed("vpl-merge",
+          path("1.shard") + " " + path("2.shard") + " --quiet -o " + path("merged.exr"));
+  EXPECT_EQ(readAll(at("merged.exr")), readAll(at("soft.exr")));
+  succeed("vpl-inspect", "check --quiet " + path("soft.exr") + " " + path("lit.vpl"));
 }
 
 TEST_F(SceneFilesOfOthers, TheFieldOfViewTakesItsLimits) {

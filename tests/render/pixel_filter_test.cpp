@@ -48,7 +48,7 @@ const std::vector<std::pair<const char*, Kind>> kFilters{{"box", Kind::Box},
 TEST(PixelFilter, DensitiesIntegrateToOne) {
   for (const auto& [name, kind] : kFilters) {
     for (const float scale : {1.0f, 0.6f, 2.0f}) {
-      const float radius = scale * PixelFilter::usualRadius(kind);
+      const float radius = scale * usualRadius(kind);
       const PixelFilter filter(kind, radius);
       EXPECT_EQ(filter.radius(), radius);
       EXPECT_EQ(filter.density(0.0f, 1.01f * radius), 0.0f);
@@ -76,7 +76,7 @@ TEST(PixelFilter, DensitiesIntegrateToOne) {
 TEST(PixelFilter, SamplesFollowTheDensity) {
   constexpr uint64_t kCount = 1 << 16;
   for (const auto& [name, kind] : kFilters) {
-    const PixelFilter filter(kind, PixelFilter::usualRadius(kind));
+    const PixelFilter filter(kind, usualRadius(kind));
     double weights = 0.0, xx = 0.0, yy = 0.0, xy = 0.0;
     for (uint64_t i = 0; i < kCount; ++i) {
       const auto [at, weight] = filter.sample(owenSobol(uint32_t(i), 7), {i, kCount, 5});

@@ -87,6 +87,34 @@ TEST_F(Overlay, ItsFilmAndCameraComeFirst) {
   EXPECT_EQ(two.views[1].film.width, 20u);
 }
 
+TEST_F(Overlay, TheFiltersOfFilesCountUnlessTheFilmNamesOne) {
+  write("sub/soft.pbrt", "PixelFilter \"gaussian\"\nInclude \"room.pbrt\"\n");
+  const FilterSpec gaussian{FilterKind::Gaussian, 1.5f}, mitchell{FilterKind::Mitchell, 1.0f};
+  EXPECT_EQ(load(mesh("soft.pbrt")).film.filter, gaussian);
+  EXPECT_EQ(load(kFilmAndCamera + mesh("soft.pbrt")).film.filter, gaussian);
+  EXPECT_EQ(load(mesh("square.obj")).film.filter, FilterSpec());
+  const std::string film = "[film]\nfilter = \"mitchell\"\nfilter_radius = 1\n";
+  const Scene other = load(film + mesh("soft.pbrt") + mesh("room.glb"));
+  EXPECT_EQ(other.film.filter, mitchell);
+  EXPECT_EQ(other.film.width, 20u) << "that of the file";
+  EXPECT_EQ(other.views.at(1).film.filter, mitchell);
+  EXPECT_EQ(other.views.at(1).film.width, 960u);
+  EXPECT_EQ(load("[film]\nfilter = \"blackman-harris\"\n" + mesh("room.glb")).film.filter,
+            (FilterSpec{FilterKind::BlackmanHarris, 1.5f}));
+  Scene viewed = loadFile("sub/soft.pbrt");
+  write("view.toml", kFilmAndCamera);
+  useViewFile(at("view.toml"), viewed);
+  EXPECT_EQ(viewed.film.filter, gaussian);
+  EXPECT_EQ(viewed.film.width, 8u);
+  for (const auto& [text, part] : {std::pair{"filter = \"sinc\"", "blackman-harris"},
+                                   {"filter_radius = 1", "without 'filter'"},
+                                   {"filter = \"box\"\nfilter_radius = 9", "outside 0.25 to 8"},
+                                   {"filter = \"box\"\nwidth = 8", "height"}})
+    EXPECT_TRUE(loadError("[film]\n" + std::string(text) + "\n" + mesh("room.glb")).find(part) !=
+                std::string::npos)
+        << text;
+}
+
 TEST_F(Overlay, ASceneWithoutCameraIsSeenAsAWhole) {
   for (const Scene& s : {load(mesh("square.obj")), loadFile("sub/square.obj")}) {
     EXPECT_EQ(countContaining(s.warnings, "has no camera; one is placed that sees"), 1u);

@@ -90,7 +90,9 @@ void warnOfMissedLight(const Scene& scene, const LightSet& lights, const Values&
   if (!missed.empty()) printWarnings("vpl-render", {missed});
 }
 
-void setFilm(const Values& options, Scene& scene) {
+void settleFilm(Given& given, Values& options, Scene& scene) {
+  given = withFilterOf(scene.film, std::move(given));
+  options = resolveRender(given);
   if (!options[kSizeOption].empty()) scene.film = parseSize(options[kSizeOption]);
   scene.film.transparent = options[kTransparentOption];
   cropOf(options, scene.film);

@@ -21,8 +21,9 @@ void requireConsistent(const Values& options, const Given& given, const RenderFi
 // unless the run only estimates.
 VplTable readLit(const fs::path& lit, const Values& options, bool estimating);
 
-// Gives the scene the film that the options ask for. Throws UsageError for a crop beyond it.
-void setFilm(const Values& options, Scene& scene);
+// Gives the scene the film that the options ask for, and the options the film's filter where they
+// name none. Throws UsageError for a crop beyond the film.
+void settleFilm(Given& given, Values& options, Scene& scene);
 
 // Throws MemoryError if an image of this size cannot fit.
 void requireMemoryForImage(const Film& film, const Values& options);

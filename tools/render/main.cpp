@@ -11,9 +11,9 @@
 namespace bnvpl {
 namespace {
 
-int runRender(const StageRequest& request, const RenderFiles& files, const ToolOptions& tool) {
+int runRender(StageRequest& request, const RenderFiles& files, const ToolOptions& tool) {
   StageRun run("vpl-render", request, tool);
-  const Values options = resolveRender(request.given);
+  Values options = resolveRender(request.given);
   requireConsistent(options, request.given, files, request.shard.has_value());
   run.used.reads("scene", request.scene.file).reads("lit", files.lit);
   Previews previews(files.viewer);
@@ -23,7 +23,7 @@ int runRender(const StageRequest& request, const RenderFiles& files, const ToolO
   const VplTable lit = readLit(files.lit, options, run.estimating());
   Scene scene = loadSceneFor(request.scene, files.lit.empty() ? Warnings::Print : Warnings::Hold);
   run.filesReady(scene.files);
-  setFilm(options, scene);
+  settleFilm(request.given, options, scene);
   if (!files.lit.empty()) requireLitOf(scene, lit, files.lit);
   if (!run.estimating()) requireMemoryForImage(scene.film, options);
   const Film film = scene.film;

@@ -101,11 +101,6 @@ PixelFilter::PixelFilter(Kind kind, float radius) {
   axis_ = std::make_shared<const Axis>(kind, double{radius});
 }
 
-float PixelFilter::usualRadius(Kind kind) {
-  constexpr std::array kRadii{0.5f, 1.5f, 1.5f, 2.0f};
-  return kRadii[static_cast<size_t>(kind)];
-}
-
 float PixelFilter::axisRadius() const { return static_cast<float>(axis_->radius); }
 
 float PixelFilter::density(float x, float y) const {

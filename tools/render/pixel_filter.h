@@ -7,12 +7,13 @@
 #include <memory>
 
 #include "core/random.h"
+#include "scene/filter_spec.h"
 
 namespace bnvpl {
 
 class PixelFilter {
  public:
-  enum class Kind { Box, Gaussian, BlackmanHarris, Mitchell };
+  using Kind = FilterKind;
 
   // A place on the film relative to the pixel's corner, in pixels, and the factor of the light
   // there. Its mean is 1; it is 1 for filters that are nowhere negative.
@@ -29,7 +30,6 @@ class PixelFilter {
 
   PixelFilter() = default;  // the box over the pixel, of radius 1/2
   PixelFilter(Kind kind, float radius);
-  static float usualRadius(Kind kind);  // in pixels
 
   // Whether the filter of a pixel is the pixel itself.
   bool isPixel() const { return !axis_; }

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <numbers>
 
+#include "core/number_text.h"
 #include "scene/surface_area.h"
 #include "tools/render/compensate/compensate.h"
 #include "tools/render/counter_layers.h"
@@ -36,14 +37,10 @@ Only onlyOf(const Values& options) {
 }
 
 PixelFilter filterOf(const Values& options) {
-  using Kind = PixelFilter::Kind;
-  const std::string& name = options[kFilterOption];
-  const Kind kind = name == "gaussian"          ? Kind::Gaussian
-                    : name == "blackman-harris" ? Kind::BlackmanHarris
-                    : name == "mitchell"        ? Kind::Mitchell
-                                                : Kind::Box;
+  const auto name = std::ranges::find(kFilterNames, options[kFilterOption]);
+  const auto kind = static_cast<FilterKind>(name - kFilterNames.begin());
   if (options.has(kFilterRadiusOption)) return {kind, options.real32(kFilterRadiusOption)};
-  return {kind, PixelFilter::usualRadius(kind)};
+  return {kind, usualRadius(kind)};
 }
 
 FilmOptions filmOptionsOf(const Values& options) {
@@ -157,6 +154,17 @@ Values resolveRender(const Given& given) {
   if (byPasses(options) && !limited) options.set(kSppOption, static_cast<uint64_t>(kUnlimitedSpp));
   budgetOf(options);  // its errors belong to the command line
   return options;
+}
+
+Given withFilterOf(const Film& film, Given given) {
+  const auto isGiven = [&](const Option& option) {
+    return textGiven(given, option.name) != nullptr;
+  };
+  if (film.filter == FilterSpec{} || isGiven(kFilterOption)) return given;
+  given.emplace_back(kFilterOption.name, nameOf(film.filter.kind));
+  if (!isGiven(kFilterRadiusOption) && film.filter.radius != usualRadius(film.filter.kind))
+    given.emplace_back(kFilterRadiusOption.name, shortestText(film.filter.radius));
+  return given;
 }
 
 uint64_t passSppOf(const Values& options) {

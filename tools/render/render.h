@@ -17,6 +17,8 @@ const StageSpec& renderSpec();
 // Values of a run. With --time, --target-error or --passes, --spp is an upper limit if it is given.
 // Throws UsageError.
 Values resolveRender(const Given& given);
+// The options as if the filter of the film had been given, unless another one was.
+Given withFilterOf(const Film& film, Given given);
 // Budget of the passes, or none if the image is rendered without passes. Throws UsageError.
 std::optional<Budget> budgetOf(const Values& options);
 // Samples per pixel in a pass, on average, unless a trial finds that fewer fit into --time.

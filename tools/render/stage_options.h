@@ -1,6 +1,7 @@
 // Options of vpl-render for every integrator.
 #pragma once
 
+#include "scene/filter_spec.h"
 #include "tools/common/options/option.h"
 
 namespace bnvpl {
@@ -40,10 +41,10 @@ inline constexpr TextOption kSizeOption = unrecorded(inTopic(
 inline constexpr TextOption kFilterOption = inTopic(
     Topic::Quality,
     choiceOption("filter", "box", "box|gaussian|blackman-harris|mitchell",
-                 "pixel filter of samples and photons; albedo, N and Z are means over the samples, "
-                 "which are spread like the filter"));
+                 "pixel filter of samples and photons, instead of the scene's; albedo, N and Z are "
+                 "means over the samples"));
 inline constexpr RealOption kFilterRadiusOption =
-    optional(realOption("filter-radius", "", 0.25, 8, "pixels",
+    optional(realOption("filter-radius", "", kMinFilterRadius, kMaxFilterRadius, "pixels",
                         "half the width of the filter; without it, box 0.5, gaussian and "
                         "blackman-harris 1.5, mitchell 2"));
 inline constexpr SwitchOption kTransparentOption = inTopic(

@@ -144,6 +144,7 @@ void noteUnused(const char* directive, const Entity& entity, Notes& notes) {
 void noteUnused(const Description& d, const std::vector<Placed>& shapes, Notes& notes) {
   noteUnused("Film", d.film, notes);
   noteUnused("Camera", d.camera, notes);
+  noteUnused("PixelFilter", d.pixelFilter, notes);
   for (const Light& light : d.lights) noteUnused("LightSource", light, notes);
   std::set<uint32_t> lamps;
   for (const Placed& placed : shapes) {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "scene/read/pbrt/pixel_filter.h"
 #include "scene/read/pbrt/syntax/transform.h"
 
 namespace bnvpl::pbrt {
@@ -172,10 +173,11 @@ void buildCamera(const Description& description, Notes& notes, SceneBuilder& bui
   readLens(entity, *worldFromCamera, notes, camera);
   // Adding 0.0 turns -0 into 0.
   const FilePoint position = worldFromCamera->point({0, 0, 0});
+  Film film = pixels.cropped();
+  film.filter = filterOf(description, notes);
   const bool given = entity.place.file || !builder.including();
   if (given)
-    builder.addCamera("", {position[0] + 0.0, position[1] + 0.0, position[2] + 0.0}, camera,
-                      pixels.cropped());
+    builder.addCamera("", {position[0] + 0.0, position[1] + 0.0, position[2] + 0.0}, camera, film);
 }
 
 }  // namespace bnvpl::pbrt

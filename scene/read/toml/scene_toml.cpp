@@ -17,11 +17,11 @@ void setView(const fs::path& file, const toml::table& root, size_t first, SceneB
   const bool mirrored = others && isMirrored(views[first].camera);
   const TomlView view = readTomlView(file, root, mirrored);
   if (view.camera) {
-    const Film film = view.film ? *view.film : others ? views[first].film : Film();
+    const Film film = others ? views[first].film : Film();
     builder.dropCameras(first);
     builder.addCamera("", view.position, *view.camera, film);
   }
-  if (view.film) builder.setFilm(*view.film, first);
+  if (view.film) builder.changeFilm([&](const Film& own) { return view.film->over(own); }, first);
 }
 
 }  // namespace

@@ -4,8 +4,19 @@ namespace bnvpl {
 
 namespace {
 
-Film readFilm(const TomlSection& s) {
-  return {s.integer("width", 1, kMaxFilmSide), s.integer("height", 1, kMaxFilmSide)};
+TomlFilm readFilm(const TomlSection& s) {
+  TomlFilm film;
+  if (s.has("filter")) {
+    FilterSpec& filter = film.filter.emplace();
+    filter.kind = static_cast<FilterKind>(s.choice("filter", kFilterNames));
+    filter.radius = static_cast<float>(s.number("filter_radius", kMinFilterRadius, kMaxFilterRadius,
+                                                double{usualRadius(filter.kind)}));
+  } else if (s.has("filter_radius")) {
+    s.fail(s.node("filter_radius"), "'filter_radius' has no effect without 'filter'; add it");
+  }
+  if (!film.filter || s.has("width") || s.has("height"))
+    film.size = {s.integer("width", 1, kMaxFilmSide), s.integer("height", 1, kMaxFilmSide)};
+  return film;
 }
 
 void readLens(const TomlSection& s, Camera& c) {
@@ -48,11 +59,17 @@ Camera readCamera(const TomlSection& s, const FilePoint& position, bool mirrored
 
 }  // namespace
 
+Film TomlFilm::over(const Film& film) const {
+  Film out = size.value_or(film);
+  out.filter = filter.value_or(film.filter);
+  return out;
+}
+
 TomlView readTomlView(const fs::path& file, const toml::table& root, bool mirrored) {
   TomlView view;
   if (root.contains("film")) {
-    view.film =
-        readFilm(TomlSection(file, "[film]", tableOf(file, root, "film"), {"width", "height"}));
+    view.film = readFilm(TomlSection(file, "[film]", tableOf(file, root, "film"),
+                                     {"width", "height", "filter", "filter_radius"}));
   }
   if (root.contains("camera")) {
     const TomlSection camera(file, "[camera]", tableOf(file, root, "camera"),

@@ -9,8 +9,16 @@
 
 namespace bnvpl {
 
+// The keys of [film]: the size of a film, its filter, or both.
+struct TomlFilm {
+  std::optional<Film> size;
+  std::optional<FilterSpec> filter;
+  // The film with the keys in place of its own.
+  Film over(const Film& film) const;
+};
+
 struct TomlView {
-  std::optional<Film> film;
+  std::optional<TomlFilm> film;
   FilePoint position{};          // position of the camera
   std::optional<Camera> camera;  // everything but its position
 };

@@ -116,6 +116,41 @@ TEST_F(PbrtCamera, Lens) {
               {"'focaldistance' must be above 0"});
 }
 
+TEST_F(PbrtCamera, PixelFilters) {
+  struct Case {
+    std::string filter;
+    FilterKind kind;
+    float radius;
+    size_t notes;
+  };
+  // Variances: of a triangle of radius 2, 2/3; of a flat bell, a parabola, of radius 1.5, 0.45; of
+  // our gaussian of radius 1, 0.10198.
+  const std::vector<Case> cases{
+      {"", FilterKind::Box, 0.5f, 0},
+      {"\"box\"", FilterKind::Box, 0.5f, 0},
+      {"\"box\" \"float xradius\" 1 \"float yradius\" 1", FilterKind::Box, 1.0f, 0},
+      {"\"box\" \"float xradius\" 2", FilterKind::Box, 1.0f, 1},
+      {"\"box\" \"float xradius\" .1 \"float yradius\" .1", FilterKind::Box, 0.25f, 1},
+      {"\"gaussian\"", FilterKind::Gaussian, 1.5f, 0},
+      {"\"gaussian\" \"float xradius\" 2.4 \"float yradius\" 2.4 \"float sigma\" .8",
+       FilterKind::Gaussian, 2.4f, 0},
+      {"\"gaussian\" \"float sigma\" 100", FilterKind::Gaussian, 2.101f, 1},
+      {"\"mitchell\"", FilterKind::Mitchell, 2.0f, 0},
+      {"\"mitchell\" \"float B\" 1 \"float C\" 0", FilterKind::Mitchell, 2.0f, 1},
+      {"\"triangle\"", FilterKind::Gaussian, 2.557f, 1},
+      {"\"sinc\" \"float xradius\" 4 \"float tau\" 3", FilterKind::Mitchell, 2.0f, 1},
+      {"\"median\"", FilterKind::Box, 0.5f, 1}};
+  for (const Case& c : cases) {
+    const Scene s = view(c.filter.empty() ? "" : "PixelFilter " + c.filter);
+    EXPECT_EQ(s.film.filter.kind, c.kind) << c.filter;
+    EXPECT_NEAR(s.film.filter.radius, c.radius, 2e-3f) << c.filter;
+    EXPECT_EQ(countContaining(s.warnings, "PixelFilter"), c.notes) << c.filter;
+  }
+  EXPECT_EQ(view("").contentHash, view("PixelFilter \"mitchell\"").contentHash);
+  EXPECT_EQ(countContaining(view("PixelFilter \"box\" \"float sigma\" 1").warnings, "'sigma'"), 1u);
+  expectError("PixelFilter \"box\" \"float xradius\" -1", "1:19", {"xradius"});
+}
+
 TEST_F(PbrtCamera, WhatIsNotRenderedIsNoted) {
   EXPECT_EQ(countContaining(view("Camera \"realistic\"").warnings, "'realistic'"), 1u);
   expectError("Camera \"perspective\" \"float screenwindow\" [1 2]", "1:22", {"xmin"});

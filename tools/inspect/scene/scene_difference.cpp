@@ -54,10 +54,11 @@ bool Comparison::samePlace(Vec3 p, Vec3 q, bool world) const {
 bool Comparison::sameViews() const {
   const Camera &c = a_.camera, &d = b_.camera;
   return a_.film.width == b_.film.width && a_.film.height == b_.film.height &&
-         samePlace(c.position, d.position) && near(c.forward, d.forward) &&
-         near(c.right, d.right) && near(c.up, d.up) && near(c.verticalFovRad, d.verticalFovRad) &&
-         near(c.shift[0], d.shift[0]) && near(c.shift[1], d.shift[1]) &&
-         c.lensRadius == d.lensRadius && (!c.hasLens() || c.focusDistance == d.focusDistance);
+         a_.film.filter == b_.film.filter && samePlace(c.position, d.position) &&
+         near(c.forward, d.forward) && near(c.right, d.right) && near(c.up, d.up) &&
+         near(c.verticalFovRad, d.verticalFovRad) && near(c.shift[0], d.shift[0]) &&
+         near(c.shift[1], d.shift[1]) && c.lensRadius == d.lensRadius &&
+         (!c.hasLens() || c.focusDistance == d.focusDistance);
 }
 
 bool Comparison::sameLight(const LightSpec& l, const LightSpec& m) const {

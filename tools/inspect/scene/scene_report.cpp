@@ -58,6 +58,10 @@ Json describeViews(const Scene& scene) {
                     {"vertical_fov_deg", c.verticalFovRad * kDegPerRad},
                     {"shift", c.shift},
                     {"film", sizeText(scene.views[i].film)}});
+    if (const FilterSpec& filter = scene.views[i].film.filter; filter != FilterSpec{}) {
+      list.back()["filter"] = nameOf(filter.kind);
+      list.back()["filter_radius"] = filter.radius;
+    }
     if (!c.hasLens()) continue;
     list.back()["lens_radius"] = c.lensRadius;
     list.back()["focus_distance"] = c.focusDistance;

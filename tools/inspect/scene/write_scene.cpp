@@ -34,11 +34,23 @@ std::string degText(float rad) {
   return shortestText(deg);
 }
 
-// Writes `mirrored` only where it differs from `guess`, the value that a reader assumes.
-std::string viewText(const Scene& scene, const Film& film, const Camera& c, bool guess) {
+std::string filterText(const FilterSpec& filter, const FilterSpec& guess) {
+  if (filter == guess) return "";
+  return std::string("filter = \"") + nameOf(filter.kind) +
+         "\"\nfilter_radius = " + shortestText(filter.radius) + "\n";
+}
+
+// What a reader assumes of a view that does not say it.
+struct Guess {
+  bool mirrored = false;
+  FilterSpec filter = {};
+};
+
+std::string viewText(const Scene& scene, const Film& film, const Camera& c, const Guess& guess) {
   std::string text = "[film]\nwidth = " + std::to_string(film.width) +
-                     "\nheight = " + std::to_string(film.height) +
-                     "\n\n[camera]\nposition = " + placeText(scene, c.position) +
+                     "\nheight = " + std::to_string(film.height) + "\n" +
+                     filterText(film.filter, guess.filter) +
+                     "\n[camera]\nposition = " + placeText(scene, c.position) +
                      "\nforward = " + listText(c.forward) + "\nup = " + listText(c.up) +
                      "\nvertical_fov_deg = " + degText(c.verticalFovRad) + "\n";
   if (c.shift != std::array<float, 2>{})
@@ -47,7 +59,8 @@ std::string viewText(const Scene& scene, const Film& film, const Camera& c, bool
     text += "lens_radius = " + shortestText(c.lensRadius) +
             "\nfocus_distance = " + shortestText(c.focusDistance) + "\n";
   }
-  if (isMirrored(c) != guess) text += std::string("mirrored = ") + (guess ? "false\n" : "true\n");
+  if (isMirrored(c) != guess.mirrored)
+    text += std::string("mirrored = ") + (guess.mirrored ? "false\n" : "true\n");
   return text;
 }
 
@@ -209,14 +222,14 @@ void writeSceneToml(const Scene& scene, OutputFolder& folder) {
   const std::string meshes = writeMeshes(scene, used.names, folder);
   writeText(folder, "scene.mtl", mtlText(scene, used));
   std::string toml =
-      viewText(scene, scene.film, scene.camera, false) + surfacesText(scene, used) + meshes;
+      viewText(scene, scene.film, scene.camera, {}) + surfacesText(scene, used) + meshes;
   toml += materialGroupsText(scene, used);
   for (const LightSpec& light : scene.lights) toml += lightText(scene, light);
   writeText(folder, "scene.toml", toml);
   for (size_t i = 0; scene.views.size() > 1 && i < scene.views.size(); ++i) {
-    writeText(
-        folder, "view-" + std::to_string(i) + ".toml",
-        viewText(scene, scene.views[i].film, scene.views[i].camera, isMirrored(scene.camera)));
+    const Guess guess{isMirrored(scene.camera), scene.film.filter};
+    writeText(folder, "view-" + std::to_string(i) + ".toml",
+              viewText(scene, scene.views[i].film, scene.views[i].camera, guess));
   }
   for (const uint32_t texture : used.textures) writeTexture(scene, texture, folder);
   for (size_t i = 0; i < scene.environments.size(); ++i)

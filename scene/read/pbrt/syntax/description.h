@@ -63,7 +63,7 @@ struct Instance {
 
 struct Description {
   std::deque<std::string> files;  // names of all files read, the scene's first
-  Entity camera{"perspective", {}, {}}, film{"rgb", {}, {}};
+  Entity camera{"perspective", {}, {}}, film{"rgb", {}, {}}, pixelFilter;
   Affine cameraFromWorld;
   std::vector<Entity> materials;
   std::map<std::string, Entity> namedMaterials, media;

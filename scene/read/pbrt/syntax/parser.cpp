@@ -57,7 +57,7 @@ const std::unordered_map<std::string_view, Parser::Directive>& Parser::directive
       {"Sampler", &Parser::ignoreEntity},
       {"Integrator", &Parser::ignoreEntity},
       {"Accelerator", &Parser::ignoreEntity},
-      {"PixelFilter", &Parser::ignoreEntity},
+      {"PixelFilter", &Parser::pixelFilter},
   };
   return all;
 }

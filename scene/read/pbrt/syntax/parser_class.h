@@ -56,6 +56,7 @@ class Parser {
   // Camera, film, materials, lights and shapes.
   void camera(const Token& at);
   void film(const Token& at) { out_.film = entity(at); }
+  void pixelFilter(const Token& at) { out_.pixelFilter = entity(at); }
   void material(const Token& at);
   void namedMaterial(const Token& at);
   void makeNamedMaterial(const Token& at);
