@@ -75,6 +75,22 @@ TEST_F(CostRun, StagesTakeWhatTheyPredictInACornellBox) {
   expectAllPredicted("'" BNVPL_SOURCE "/scenes/cornell/scene.toml'");
 }
 
+TEST_F(CostRun, MemoryOfLightGroupsIsPredicted) {
+  std::string lights;
+  for (const char* name : {"key", "fill", "rim"}) {
+    lights += "\n[[light]]\ntype = \"point\"\nposition = [0.1, 0.3, 0.1]\npower = [1, 1, 1]\n" +
+              std::string("group = \"") + name + "\"\n";
+  }
+  write("groups.toml", "[[mesh]]\nfile = " + scene_ + lights);
+  const std::string render = path("groups.toml") +
+                             " --integrator path --size 640x480 --passes 2 --pass-spp 1 -o " +
+                             path("x.exr") + " --layers light_groups";
+  const double told = estimated("vpl-render", render).memoryMiB,
+               took = taken("vpl-render", render).memoryMiB;
+  EXPECT_LT(told, 1.25 * took);
+  EXPECT_GT(told, took / 1.25);
+}
+
 TEST_F(CostRun, ShardsTakeTheirPart) {
   const std::string render = scene_ + " --integrator path --size 192x144 --spp 256 -o ";
   const Need whole = estimated("vpl-render", render + path("x.exr"));

@@ -1,4 +1,5 @@
 // --checkpoint: stages that are stopped and continued.
+#include "formats/image/exr_io.h"
 #include "formats/shard/checkpoint.h"
 #include "tests/pipeline/tool_runner.h"
 #include "tools/common/run/exit_codes.h"
@@ -63,6 +64,22 @@ TEST_F(ResumeRun, StoppedAgainAndAgainGivesTheSameBytes) {
     EXPECT_EQ(readAll(at(pieces)), readAll(at(whole)));
   }
   EXPECT_FALSE(fs::exists(at("work.checkpoint")));  // done: nothing to continue
+}
+
+TEST_F(ResumeRun, LightGroupsOfGuidedPathsGiveTheSameBytes) {
+  write("groups.toml", "[[mesh]]\nfile = " + scene_ +
+                           "\n[[light]]\ntype = \"point\"\nposition = [0.1, 0.3, 0.1]\n"
+                           "power = [1, 1, 1]\ngroup = \"fill\"\n");
+  const std::string scene = path("groups.toml");
+  makeStages(scene);
+  const std::string render =
+      scene + " " + path("lit.vpl") + " --integrator guided --size 64x48 --layers light_groups";
+  for (const char* samples : {" --spp 64", " --passes 12"}) {
+    succeed("vpl-render", render + samples + " -o " + path("whole.exr"));
+    EXPECT_GE(runInPieces("vpl-render", render + samples + " -o " + path("pieces.exr")), 1);
+    EXPECT_EQ(readAll(at("pieces.exr")), readAll(at("whole.exr"))) << samples;
+  }
+  EXPECT_NE(readExr(at("pieces.exr")).find("light_fill.R"), nullptr);
 }
 
 TEST_F(ResumeRun, SavingAllTheTimeGivesTheSameBytes) {

@@ -44,6 +44,17 @@ TEST_F(TooLarge, CountsAndFilms) {
   EXPECT_EQ(listing(), std::vector<std::string>{});
 }
 
+TEST_F(TooLarge, LightGroupsCount) {
+  write("groups.toml", "[[mesh]]\nfile = " + scene_ +
+                           "\n[[light]]\ntype = \"point\"\nposition = [0.1, 0.3, 0.1]\n"
+                           "power = [1, 1, 1]\ngroup = \"fill\"\n");
+  const std::string render =
+      path("groups.toml") + " --integrator path -o " + path("x.exr") + " --size 4096x4096";
+  fail("vpl-render", render, kExitMemory, {"needs about 4.67 GiB"}, kFourGib);
+  fail("vpl-render", render + " --layers light_groups", kExitMemory, {"needs about 8.45 GiB"},
+       kFourGib);
+}
+
 TEST_F(TooLarge, Files) {
   writeHuge("c.vpl", VplStage::Candidates);
   writeHuge("v.vpl", VplStage::Eliminated);

@@ -13,11 +13,10 @@ std::vector<fs::path> mergeRendered(ShardSet& shards, const MergeOutput& output,
   if (budgetOf(options)) throw InputError("shards of passes cannot be merged; make them again");
   options.set(kExposureOption, output.exposure);
   const Film film = parseSize(fieldOf<std::string>(fieldOf<Json>(whole.run, "view"), "size"));
-  requireMemory(bytesPerPixelOf(options) * film.width * film.height,
+  const auto groups = fieldOf<std::vector<std::string>>(whole.sources, "light_groups");
+  requireMemory(bytesPerPixelOf(options, groups.size()) * film.width * film.height,
                 "an image of " + sizeText(film) + " pixels", "choose a smaller --size");
-  RenderResult result =
-      joinRendered(film, options, shards.source(),
-                   fieldOf<std::vector<std::string>>(whole.sources, "light_groups"));
+  RenderResult result = joinRendered(film, options, shards.source(), groups);
   takeSources(whole.sources, result);
   finishImage(result, options, whole.history);
   reportRender(result, options, summary);

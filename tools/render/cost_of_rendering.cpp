@@ -25,6 +25,8 @@ Given withoutPasses(const Given& given, const Values& options) {
         name != "pass-spp" && name != "spp" && name != "layers")
       plain.emplace_back(name, text);
   }
+  if (std::ranges::any_of(layersOf(options), &Layer::ofGroups))
+    plain.emplace_back("layers", "light_groups");
   plain.emplace_back("spp",
                      std::to_string(std::min(budget->spp, budget->passes * passSppOf(options))));
   return plain;
@@ -74,9 +76,10 @@ Cost costOfRendering(const RayScene& rays, const LightSet& lights, const VplTabl
   cost.probed =
       std::min(1.0, cost.probed * (fewPixels / pixels) * (double(tried) / double(spp)) / crop);
   // What the film takes, and what an image that is developed takes besides (measured).
+  const auto groups = double(lightGroupsOf(plain, rays.scene()).size());
   cost.memoryBytes += (cost.memoryBytes - memory.before()) * (pixels / fewPixels - 1.0);
   cost.memoryBytes += pixels * (60.0 + (redistributesFireflies(plain) ? 170.0 : 0.0) +
-                                (budgetOf(options) ? 100.0 : 0.0));
+                                (budgetOf(options) ? 100.0 : 0.0) + 24.0 * groups);
   if (integrator.wholePixels) {
     constexpr double kTilePixels = kTileSide * kTileSide;
     cost.memoryBytes +=

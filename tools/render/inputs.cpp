@@ -98,8 +98,10 @@ void settleFilm(Given& given, Values& options, Scene& scene) {
   cropOf(options, scene.film);
 }
 
-void requireMemoryForImage(const Film& film, const Values& options) {
-  requireMemory(bytesPerPixelOf(options) * film.width * film.height,
+void requireMemoryForImage(const Scene& scene, const Values& options) {
+  const Film& film = scene.film;
+  const size_t groups = lightGroupsOf(options, scene).size();
+  requireMemory(bytesPerPixelOf(options, groups) * film.width * film.height,
                 "an image of " + sizeText(film) + " pixels", "choose a smaller --size");
 }
 

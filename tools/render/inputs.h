@@ -26,7 +26,7 @@ VplTable readLit(const fs::path& lit, const Values& options, bool estimating);
 void settleFilm(Given& given, Values& options, Scene& scene);
 
 // Throws MemoryError if an image of this size cannot fit.
-void requireMemoryForImage(const Film& film, const Values& options);
+void requireMemoryForImage(const Scene& scene, const Values& options);
 
 // Files that the image depends on.
 std::vector<fs::path> filesRead(const Scene& scene, const RenderFiles& files);

@@ -25,7 +25,7 @@ int runRender(StageRequest& request, const RenderFiles& files, const ToolOptions
   run.filesReady(scene.files);
   settleFilm(request.given, options, scene);
   if (!files.lit.empty()) requireLitOf(scene, lit, files.lit);
-  if (!run.estimating()) requireMemoryForImage(scene.film, options);
+  if (!run.estimating()) requireMemoryForImage(scene, options);
   const Film film = scene.film;
   if (run.estimating()) scene.film = filmToTry(film);
   const RayScene rays(scene, tool.processor);

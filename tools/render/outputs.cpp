@@ -73,11 +73,13 @@ double percentOf(double part, double whole) { return whole > 0 ? 100 * part / wh
 
 }  // namespace
 
-double bytesPerPixelOf(const Values& options) {
+double bytesPerPixelOf(const Values& options, size_t groups) {
   double bytes = 299;  // measured: 294 to 349, depending on layers
   if (redistributesFireflies(options)) bytes += 40;
   if (budgetOf(options)) bytes += 120;              // sums over passes
-  if (integratorOf(options).photons) bytes += 168;  // exact sums of photons
+  const bool photons = integratorOf(options).photons;
+  if (photons) bytes += 168;  // exact sums of photons
+  if (groups > 0) bytes += 50.0 + double(groups) * (96 + (photons ? 168 : 0));
   return bytes;
 }
 

@@ -11,8 +11,8 @@ struct ImagePaths {
   fs::path exr, png;  // png is empty if no preview is wanted
 };
 
-// Memory of an image, bytes per pixel.
-double bytesPerPixelOf(const Values& options);
+// Memory of an image that shows this many light groups, bytes per pixel.
+double bytesPerPixelOf(const Values& options, size_t groups);
 
 // Adds the image and its preview at --exposure to the files, and both to the summary.
 void addImages(OutputSet& files, const ImagePaths& paths, const Image& image, const Values& options,
