@@ -18,18 +18,18 @@ DenoiserFeatures denoiserFeatures(const RayScene& rays, const SurfacePoint& firs
   DenoiserFeatures out;
   SurfacePoint hit = first;
   Vec3 throughput{1.0f};
+  float normalLeft = 1.0f;
   for (unsigned followed = 0;; ++followed) {
     if (hit.triangle == kNone) return out;
     const Bsdf bsdf(rays.scene(), hit);
     const bool ends = bsdf.specularProbability() == 0.0f || !bsdf.specularIsDelta();
     const Vec3 here = throughput * atMostOne(ends ? bsdf.albedo() : bsdf.roughAlbedo());
     out.albedo += here;
-    // A normal weighs as much as its surface's albedo in what is left of the throughput.
-    if (ends) {
-      out.normal += hit.ns * maxComponent(throughput);
-      return out;
-    }
-    if (bsdf.hasRough()) out.normal += hit.ns * (1.0f - bsdf.specularProbability());
+    // A coat and its base share what is left of the normal by how much light each returns.
+    const float passed = ends ? 0.0f : bsdf.specularProbability();
+    out.normal += hit.ns * (normalLeft * (1.0f - passed));
+    if (ends) return out;
+    normalLeft *= passed;
     BsdfSample sample;
     Ray next;
     if (!scatter(rays, bsdf, LobeGroup::Specular, Transport::Radiance, rng, sample, next))
@@ -37,7 +37,7 @@ DenoiserFeatures denoiserFeatures(const RayScene& rays, const SurfacePoint& firs
     throughput = throughput * atMostOne(sample.weight);
     if (followed == kMaxFollowed) {
       out.albedo += throughput;
-      out.normal += hit.ns * maxComponent(throughput);
+      out.normal += hit.ns * normalLeft;
       return out;
     }
     rays.closestHit(next.origin, next.direction, hit);

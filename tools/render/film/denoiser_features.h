@@ -19,7 +19,7 @@ struct DenoiserFeatures {
 
 // Features of a camera ray that hit `first`. Perfect mirrors and glass show those of what they
 // reflect and transmit, at random by Fresnel; a perfectly smooth coat adds what it reflects to the
-// albedo of its base.
+// albedo of its base. Normals keep their full length: a coat and its base share it.
 DenoiserFeatures denoiserFeatures(const RayScene& rays, const SurfacePoint& first, Rng& rng);
 
 }  // namespace bnvpl
