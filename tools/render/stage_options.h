@@ -40,9 +40,10 @@ inline constexpr TextOption kSizeOption = unrecorded(inTopic(
                "size of the film instead of the scene's; keeps the vertical field of view")));
 inline constexpr TextOption kFilterOption = inTopic(
     Topic::Quality,
-    choiceOption("filter", "box", "box|gaussian|blackman-harris|mitchell",
-                 "pixel filter instead of the scene's; it spreads samples and photons, and albedo, N "
-                 "and Z are means over the samples"));
+    choiceOption(
+        "filter", "box", "box|gaussian|blackman-harris|mitchell",
+        "pixel filter instead of the scene's; it spreads samples and photons, and albedo, N "
+        "and Z are means over the samples"));
 inline constexpr RealOption kFilterRadiusOption =
     optional(realOption("filter-radius", "", kMinFilterRadius, kMaxFilterRadius, "pixels",
                         "half the width of the filter; without it, box 0.5, gaussian and "
