@@ -100,8 +100,7 @@ TEST(DenoiserFeatures, VarnishAddsWhatItReflects) {
   expectFeatures({before.albedo - alone.albedo, {}}, 0.04f * kWall, {}, 1e-3f);
   EXPECT_GT(alone.albedo.x, 0.1f);
   EXPECT_LT(alone.albedo.x, 0.3f);
-  // Of all that is seen, the base keeps its share of the normal: what the coat shows takes the
-  // rest.
+  // The base keeps its share of the normal; what the coat shows takes the rest.
   EXPECT_NEAR(before.normal.z, 2.0f * alone.normal.z - 1.0f, 0.01f);
   CoatedConductorModel lacquered;
   lacquered.fresnel = metal(Vec3(0.8f), 0.3f).fresnel;
@@ -111,7 +110,7 @@ TEST(DenoiserFeatures, VarnishAddsWhatItReflects) {
   EXPECT_LT(metal.albedo.x, 0.8f);
 }
 
-// Of a sheet, 2F / (1 + F) is reflected at normal incidence.
+// A sheet reflects 2F / (1 + F) at normal incidence.
 TEST(DenoiserFeatures, GlassShowsWhatIsBehindItAndWhatItReflects) {
   DielectricModel sheet;
   sheet.thin = true;
