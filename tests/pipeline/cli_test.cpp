@@ -130,6 +130,10 @@ TEST_F(Options, MistakesAreReportedInSentences) {
        {"'--gather', 'all' have no meaning here; check how the option is written"});
   fail("vpl-estimate", scene_ + " a.vpl --photns=5" + out, kExitUsage,
        {"'--photns' is no option here; did you mean --photons?"});
+  fail("vpl-eliminate", "a.vpl --cuont 3" + out, kExitUsage,
+       {"'--cuont' is no option here; did you mean --count?"});
+  fail("vpl-render", "--hlep", kExitUsage, {"'--hlep' is no option here; did you mean --help?"});
+  fail("vpl-inspect", "--hlep", kExitUsage, {"'--hlep' is no option here; did you mean --help?"});
   fail("vpl-inspect", "compare a.exr b.exr --max-relms 1", kExitUsage,
        {"did you mean --max-relmse? See vpl-inspect compare --help"});
   fail("vpl-render", scene_ + " a.vpl -o " + path("x.exr") + " --gather tilecut", kExitUsage,

@@ -47,10 +47,8 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 4> kRenamed{
      {"--balance", "--allocate"},
      {"--near-field", "--compensate near-field or none"}}};
 
-// Describes words that belong to no option.
-std::string describeExtras(const CLI::App& cli, const std::vector<std::string>& words) {
-  std::string list;
-  bool option = false;
+// Describes the first word that is a mistyped or outdated option; empty: there is none.
+std::string describeMistyped(const CLI::App& cli, const std::vector<std::string>& words) {
   for (const std::string& word : words) {
     for (const auto& [before, today] : kRenamed) {
       if (word == before || word.starts_with(std::string(before) + "="))
@@ -60,6 +58,15 @@ std::string describeExtras(const CLI::App& cli, const std::vector<std::string>& 
     const std::string meant =
         name.starts_with("--") ? didYouMean(name.substr(2), optionsOf(cli), "", "--") : "";
     if (!meant.empty()) return "'" + name + "' is no option here" + meant;
+  }
+  return "";
+}
+
+// Describes words that belong to no option.
+std::string describeExtras(const std::vector<std::string>& words) {
+  std::string list;
+  bool option = false;
+  for (const std::string& word : words) {
     list += (list.empty() ? "'" : ", '") + word + "'";
     option = option || word.starts_with('-');
   }
@@ -72,9 +79,12 @@ std::string describeAny(const CLI::ParseError& error, const CLI::App& cli) {
   const std::string text = error.what();
   const std::vector<std::string> words = cli.remaining(true);
   std::smatch match;
+  // A mistyped option may be the one that seems to be missing.
+  const std::string mistyped = describeMistyped(cli, words);
+  if (!mistyped.empty()) return mistyped;
   if (text == "A subcommand is required") return describeCommand(cli, words);
   if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr && !words.empty())
-    return describeExtras(cli, words);
+    return describeExtras(words);
   if (std::regex_match(text, match, std::regex("(.*): At Most \\d+ required but received \\d+")))
     return match.str(1) + " is given more than once; leave all but one out";
   if (std::regex_match(text, match, std::regex("(.*): \\d+ required (\\S+) missing")))
