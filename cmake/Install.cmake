@@ -32,7 +32,7 @@ else()
 endif()
 
 install(DIRECTORY pipelines scenes blender DESTINATION ${CMAKE_INSTALL_DATADIR}/bnvpl USE_SOURCE_PERMISSIONS COMPONENT data
-        PATTERN __pycache__ EXCLUDE PATTERN ".git*" EXCLUDE)
+        PATTERN __pycache__ EXCLUDE PATTERN ".git*" EXCLUDE REGEX "/blender/tests$" EXCLUDE)
 
 # Pages keep their places, so that their links to each other lead somewhere.
 file(GLOB_RECURSE pages RELATIVE ${CMAKE_SOURCE_DIR} CONFIGURE_DEPENDS

@@ -98,6 +98,14 @@ class Installed(InstalledTest):
             graph = (Path(folder) / "build.ninja").read_text()
             self.assertIn(str(self.prefix / "bin/vpl-place"), graph)
 
+    def test_make_help_names_the_makefile_that_is_installed(self) -> None:
+        makefile = self.share / "bnvpl/pipelines/Makefile"
+        self.assertIn(f"make -f {makefile} SCENE=", run("make", "-f", makefile, "help"))
+
+    def test_add_on_comes_without_its_tests(self) -> None:
+        folders = [f.name for f in (self.share / "bnvpl/blender").iterdir()]
+        self.assertEqual(folders, ["bnvpl_blender"])
+
     def test_python_takes_the_tools_on_the_path(self) -> None:
         (package,) = self.prefix.glob("lib/python3*/*-packages/bnvpl")
         self.assertEqual(list(package.rglob("__pycache__")), [])
