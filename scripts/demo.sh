@@ -4,7 +4,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-scripts/install_packages.sh
+scripts/install_packages.sh --build
 echo "Building the tools into build/release"
 cmake --preset release
 cmake --build --preset release --target vpl-place vpl-eliminate vpl-estimate vpl-render vpl-inspect

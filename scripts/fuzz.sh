@@ -14,7 +14,7 @@ if ((${#targets[@]} == 0)); then
   for corpus in fuzz/corpus/*/; do targets+=("$(basename "$corpus")"); done
 fi
 
-scripts/install_packages.sh clang libclang-rt-14-dev llvm
+scripts/install_packages.sh --build clang libclang-rt-14-dev llvm
 echo "Building the fuzz targets into build/fuzz"
 cmake --preset fuzz >/dev/null
 cmake --build --preset fuzz

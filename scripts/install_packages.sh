@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs the packages that the build and the tests need on Debian 12 and 13 and Ubuntu 24.04, and those named as
 # arguments. Does nothing when all are installed.
+#   scripts/install_packages.sh [--build] [PACKAGE ...]   --build: no packages of tests, evaluation and Python
 set -euo pipefail
 
 # Ubuntu has another package of libjpeg-turbo, and Chromium as a snap only.
@@ -22,11 +23,18 @@ packages=(
   libtinygltf-dev libdraco-dev libmeshoptimizer-dev       # glTF, and its compressions
   nlohmann-json3-dev libxxhash-dev                        # provenance, checksums
   libgtest-dev libbenchmark-dev                           # tests, benchmarks
+)
+others=(
   python3-numpy python3-matplotlib python3-openimageio    # evaluation, package
   python3-xxhash python3-pip python3-yaml                 # Python package; test of the workflow
   "${browser[@]}" python3-selenium                        # test of its report
-  "$@"
 )
+if [[ ${1:-} == --build ]]; then
+  shift
+else
+  packages+=("${others[@]}")
+fi
+packages+=("$@")
 
 if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
   echo "No apt here, so nothing is installed. The build needs what Debian calls:"

@@ -141,6 +141,14 @@ class Installed(InstalledTest):
         self.assertEqual(sum(len(part) for part in parts.values()), len(everything))
         self.assertEqual(set().union(*parts.values()), everything)
 
+    def test_packages_of_tests_are_not_those_of_the_build(self) -> None:
+        script = ROOT / "scripts/install_packages.sh"
+        build = run("/bin/bash", script, "--build", "fish", PATH="/nonexistent")  # no apt there
+        everything = run("/bin/bash", script, PATH="/nonexistent")
+        self.assertRegex(build, r"libembree-dev .* fish\n")
+        self.assertNotIn("numpy", build)
+        self.assertRegex(everything, r"libembree-dev .* python3-numpy ")
+
     def test_licences_of_all_libraries(self) -> None:
         doc = self.share / "doc/bnvpl"
         self.assertTrue((doc / "LICENSE").is_file())
