@@ -10,6 +10,7 @@ import datetime
 import importlib
 import os
 import platform
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -46,6 +47,9 @@ def processor() -> str:
 
 
 def git(*words: str) -> str:
+    """Output of git; empty where there is no git or no clone."""
+    if shutil.which("git") is None:
+        return ""
     done = subprocess.run(["git", "-C", str(settings.ROOT), *words], capture_output=True, text=True)
     return done.stdout.strip()
 
@@ -64,7 +68,7 @@ def commit() -> str:
         "tools",
         "transport",
     )
-    return git("rev-parse", "--short", "HEAD") + (" with changes" if changed else "")
+    return (git("rev-parse", "--short", "HEAD") or "unknown") + (" with changes" if changed else "")
 
 
 def provenance(size: str, runner: Runner) -> dict[str, Any]:

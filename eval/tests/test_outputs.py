@@ -3,6 +3,7 @@
 import sys
 import tempfile
 import unittest
+import unittest.mock
 from collections.abc import Callable
 from pathlib import Path
 
@@ -11,6 +12,13 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from bnvpl_eval import images, output  # noqa: E402 (after the path that it needs)
 from bnvpl_eval.guard import guarded, output_guard  # noqa: E402
+from evaluate import commit  # noqa: E402
+
+
+class Commit(unittest.TestCase):
+    def test_without_git_it_is_unknown(self) -> None:
+        with unittest.mock.patch.dict("os.environ", {"PATH": "/nonexistent"}):
+            self.assertEqual(commit(), "unknown")
 
 
 class Outputs(unittest.TestCase):
