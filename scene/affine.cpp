@@ -59,7 +59,8 @@ Affine Affine::fromParts(const FilePoint& translate, const FilePoint& rotateRad,
                           {-sy, sx * cy, cx * cy}};
   Affine a;
   for (size_t i = 0; i < 3; ++i) {
-    for (size_t j = 0; j < 3; ++j) a.m[i][j] = r[i][j] * scale[j];
+    // Adding 0.0 turns -0 into 0, with which the identity keeps zeros as they are.
+    for (size_t j = 0; j < 3; ++j) a.m[i][j] = r[i][j] * scale[j] + 0.0;
     a.m[i][3] = translate[i];
   }
   return a;

@@ -33,6 +33,9 @@ class Overlay : public SceneFiles {
           "MakeNamedMaterial \"paint\" \"string type\" \"diffuse\"\nNamedMaterial \"paint\"\n" +
               kPbrtSquare);
     write("sub/square.obj", kSquareObj);
+    write("sub/bent.obj",
+          "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nvn -0 0 -1\nvn 0.6 -0 -0.8\nvn -0.6 -0.8 -0\n"
+          "f 1//1 2//2 3//3\n");
     write("sub/square.mtl", "newmtl paint\nKd 1 1 1\nmap_Kd dot.tga\n");
     write("sub/dot.tga", tga(1, 1, {{10, 20, 30, 255}}));
   }
@@ -57,7 +60,7 @@ TEST_F(Overlay, FilesOfAllFormatsLieBesideEachOther) {
 }
 
 TEST_F(Overlay, AFileThatIsIncludedIsTheSameScene) {
-  for (const char* name : {"room.glb", "room.pbrt", "square.obj"}) {
+  for (const char* name : {"room.glb", "room.pbrt", "square.obj", "bent.obj"}) {
     const Scene alone = loadFile(std::string("sub/") + name), over = load(mesh(name));
     EXPECT_EQ(over.contentHash, alone.contentHash) << name;
     EXPECT_EQ(over.film.width, alone.film.width) << name;
