@@ -9,8 +9,7 @@ namespace bnvpl {
 namespace {
 
 // Number of branches into which a photon splits at its first vertex that the camera sees. Where few
-// photons get there, the path to it costs more than what follows (measured: docs/theory.md, "Light
-// tracer").
+// photons get there, the path to it costs more than what follows (measured: theory.md, "Branches").
 constexpr uint64_t kBranches = 32;
 
 }  // namespace
