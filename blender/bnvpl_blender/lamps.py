@@ -13,9 +13,15 @@ from dataclasses import dataclass
 from .toml_text import Section, Vector
 
 Matrix = Sequence[Vector]  # rows, world from object
-# Cycles divides the watts of an area lamp by four times its area to find the radiance, and a
-# Lambertian surface of that radiance sends out pi/4 of those watts.
-AREA_SHARE = math.pi / 4
+
+
+def area_share(blender_version: Sequence[int]) -> float:
+    """The power of an area lamp over the watts that Blender shows.
+
+    Before 4.0, Cycles divided the watts by four times the area to find the radiance, and a
+    Lambertian surface of that radiance sends out pi/4 of them. Since then it divides by pi.
+    """
+    return math.pi / 4 if tuple(blender_version) < (4, 0) else 1.0
 
 
 def y_up(v: Vector) -> list[float]:
@@ -42,12 +48,12 @@ def _towards(matrix: Matrix) -> list[float]:
 
 @dataclass(frozen=True)
 class Lamp:
-    """A lamp in the world, with the names and units of bpy.types.Light."""
+    """A lamp in the world, with the names and units of bpy.types.Light but for its power."""
 
     name: str
     type: str  # POINT, SPOT, SUN, AREA
     matrix: Matrix
-    power: Vector  # colour times watts; of a sun times W/m2
+    power: Vector  # what it sends out in W; of a sun, irradiance in W/m2
     radius: float = 0.0  # a point's
     angle: float = 0.0  # diameter of a sun, radians
     spot_size: float = 0.0  # whole cone, radians
@@ -92,7 +98,7 @@ def _area(lamp: Lamp) -> Section:
     width = lamp.size * _length(_column(lamp.matrix, 0))
     height = size_y * _length(_column(lamp.matrix, 1))
     section: Section = {
-        "power": [AREA_SHARE * p for p in lamp.power],
+        "power": lamp.power,
         "direction": _towards(lamp.matrix),
     }
     round_shape = lamp.shape in ("DISK", "ELLIPSE")

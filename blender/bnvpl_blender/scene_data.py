@@ -7,7 +7,14 @@ from dataclasses import dataclass, field
 
 import bpy
 
-from .lamps import Lamp, Lens, camera_section, light_section, viewport_projection
+from .lamps import (
+    Lamp,
+    Lens,
+    area_share,
+    camera_section,
+    light_section,
+    viewport_projection,
+)
 from .materials import DEFAULT_MATERIAL, DEFAULT_SECTION, material_sections, surface_node
 from .toml_text import Section, scene_text
 
@@ -114,6 +121,8 @@ def lamp_of(instance, told: SceneData) -> Lamp:
         told.warnings.append(f"lamp '{light.name}': its spread is ignored")
     if area and light.shape == "ELLIPSE":
         told.warnings.append(f"lamp '{light.name}': the ellipse becomes a rectangle")
+    if area:
+        strength *= area_share(bpy.app.version)
     return Lamp(
         name=instance.object.name,
         type=light.type,

@@ -178,7 +178,7 @@ class FilesTest(RenderTest):
     def test_default_scene_with_area_light(self) -> None:
         """Blender's own first scene: a cube alone, where no surface lights another.
 
-        The model of glTF, with which Principled BSDF is exported, reflects 5 % less.
+        The model of glTF, with which Principled BSDF is exported, reflects 5 % less than in 3.4.
         """
         bpy.ops.wm.read_homefile(use_factory_startup=True)
         scene = bpy.context.scene
@@ -212,7 +212,8 @@ class FilesTest(RenderTest):
         """The room that came as glTF looks as it does without Blender."""
         scene = empty_scene()
         room = ROOT / "scenes/gltf-room/room.glb"
-        np.bool = bool  # Debian's importer of 3.4 uses this name, which its NumPy lacks
+        if not hasattr(np, "bool"):
+            np.bool = bool  # the importer of 3.4 uses this name, which NumPy lacked
         bpy.ops.import_scene.gltf(filepath=str(room))
         scene.camera = next(o for o in scene.objects if o.type == "CAMERA")
         scene.bnvpl.preset = "DEFAULT"
@@ -258,7 +259,7 @@ class FilesTest(RenderTest):
         told = subprocess.run(
             ["vpl-inspect", "scene", "scene.toml"], cwd=folder, check=True, capture_output=True
         ).stdout.decode()
-        self.assertEqual(told.count("material 'inner': ("), 2, told)
+        self.assertEqual(told.count("'inner': ("), 2, told)
         self.assertIn("'floor': 32 triangles", told)
         self.assertIn("'wall': 2 triangles", told)
         self.assertNotIn("Wand links", told)

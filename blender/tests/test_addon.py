@@ -45,7 +45,9 @@ class SectionsTest(unittest.TestCase):
         self.assertEqual(self.lamp("POINT", radius=0.1)["type"], "sphere")
         area = self.lamp("AREA", shape="RECTANGLE", size=2.0, size_y=0.5)
         self.assertEqual((area["width"], area["height"]), (2.0, 0.5))
-        np.testing.assert_allclose(np.array(area["power"]), np.array([8, 4, 2]) * math.pi / 4)
+        self.assertEqual(area["power"], (8.0, 4.0, 2.0))
+        self.assertEqual(lamps.area_share((3, 6, 5)), math.pi / 4)
+        self.assertEqual(lamps.area_share((4, 0, 0)), 1.0)
         self.assertEqual(self.lamp("AREA", shape="DISK", size=2.0)["radius"], 1.0)
         oval = self.lamp("AREA", shape="ELLIPSE", size=2.0, size_y=0.5)
         width, height = oval["width"], oval["height"]
