@@ -115,23 +115,20 @@ CASES = {
 
 
 def table() -> Iterator[str]:
-    yield "| picture | scene, film | crop: x, y, width, height | left | right |"
-    yield "|---|---|---|---|---|"
+    yield "| picture | scene, film | crop: x, y, width, height | both | left | right |"
+    yield "|---|---|---|---|---|---|"
     for name, case in CASES.items():
-        columns = [
-            "; ".join(
-                f"`{tool} {o}`"
-                for tool, o in zip(
-                    ("place", "eliminate", "estimate", "render"), options, strict=True
-                )
-                if o
-            )
-            for options in (case.left, case.right)
-        ]
+        both, left, right = [], [], []
+        stages = ("place", "eliminate", "estimate", "render")
+        for tool, before, after in zip(stages, case.left, case.right, strict=True):
+            if before != after:
+                left.append(f"`{tool} {before}`")
+                right.append(f"`{tool} {after}`")
+            elif before:
+                both.append(f"`{tool} {before}`")
+        options = " | ".join("; ".join(column) for column in (both, left, right))
         crop = ", ".join(map(str, case.crop)) or "none"
-        yield (
-            f"| `guide-{name}.png` | `{case.scene}`, {case.size} | {crop} | {' | '.join(columns)} |"
-        )
+        yield f"| `guide-{name}.png` | `{case.scene}`, {case.size} | {crop} | {options} |"
 
 
 def run(tools: Path, folder: Path, tool: str, *words: object) -> None:
