@@ -59,7 +59,8 @@ class Races(Workbench):
         """A run within `flock out vpl-render ...` waits a little, and goes on."""
         require("flock")
         command = next(each for each in COMMANDS if each.name == "path")
-        line = ["flock", self.folder, *command.line(self.folder), "--quiet"]
+        words = ["flock", self.folder, *command.line(self.folder), "--quiet"]
+        line = [str(word) for word in words]
         result = subprocess.run(line, cwd=SOURCE, capture_output=True, text=True, timeout=30)
         self.assertEqual((result.returncode, result.stderr), (OK, ""))
 
