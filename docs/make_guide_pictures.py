@@ -2,11 +2,13 @@
 """Renders the pictures of docs/guide.md: each artefact beside its cure, from the tools themselves.
 
 docs/make_guide_pictures.py [--bin build/release/bin] [NAME ...]    # 15 minutes on two cores
+docs/make_guide_pictures.py --check NAME                 # whether a picture is as the tools make it
 docs/make_guide_pictures.py --table                      # the table of docs/images/README.md
 """
 
 import argparse
 import subprocess
+import sys
 import tempfile
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -16,6 +18,7 @@ from typing import Any
 import numpy.typing as npt
 
 ROOT = Path(__file__).resolve().parents[1]
+MAX_DIFFERENCE = 0.5  # mean over a picture, steps of 255, for --check
 
 
 @dataclass
@@ -181,18 +184,26 @@ def write(name: str, panels: Sequence[npt.NDArray[Any]]) -> None:
     print(f"docs/images/guide-{name}.png", flush=True)
 
 
-def make(name: str, tools: Path, folder: Path) -> None:
+def panel(case: Case, side: str, tools: Path, folder: Path) -> npt.NDArray[Any]:
     import numpy
     import OpenImageIO
 
-    case = CASES[name]
-    for options, to in (case.left, "left"), (case.right, "right"):
-        render(tools, case, options, folder, to)
-    panels = [shown(folder / f"{x}.png", OpenImageIO.UINT8) for x in ("left", "right")]
+    render(tools, case, case.left if side == "left" else case.right, folder, side)
+    pixels = shown(folder / f"{side}.png", OpenImageIO.UINT8)
     if case.crop:
         x, y, width, height = case.crop
-        panels = [p[y : y + height, x : x + width] for p in panels]
-    write(name, [numpy.repeat(numpy.repeat(p, case.zoom, 0), case.zoom, 1) for p in panels])
+        pixels = pixels[y : y + height, x : x + width]
+    result: npt.NDArray[Any] = numpy.repeat(numpy.repeat(pixels, case.zoom, 0), case.zoom, 1)
+    return result
+
+
+def difference(name: str, tools: Path, folder: Path) -> float:
+    """The mean difference, in 8-bit steps, of a picture's right side and what the tools make."""
+    import OpenImageIO
+
+    now = panel(CASES[name], "right", tools, folder)
+    kept = shown(ROOT / "docs/images" / f"guide-{name}.png", OpenImageIO.UINT8)
+    return float(abs(kept[:, -now.shape[1] :].astype(float) - now).mean())
 
 
 def main() -> None:
@@ -204,13 +215,23 @@ def main() -> None:
         "--bin", default=ROOT / "build/release/bin", type=Path, help="folder of the executables"
     )
     parser.add_argument("--table", action="store_true", help="print the recipes instead")
+    parser.add_argument(
+        "--check", action="store_true", help="compare the pictures' right sides with the tools'"
+    )
     options = parser.parse_args()
     if options.table:
         print("\n".join(table()))
         return
     for name in options.names or CASES:
         with tempfile.TemporaryDirectory(prefix="bnvpl-guide.") as folder:
-            make(name, options.bin.resolve(), Path(folder))
+            tools, place = options.bin.resolve(), Path(folder)
+            if not options.check:
+                write(name, [panel(CASES[name], side, tools, place) for side in ("left", "right")])
+            elif (found := difference(name, tools, place)) > MAX_DIFFERENCE:
+                sys.exit(
+                    f"docs/images/guide-{name}.png: differs by {found:.2f} steps of 255 from what "
+                    "the tools make; look at both, and run docs/make_guide_pictures.py"
+                )
 
 
 if __name__ == "__main__":
