@@ -39,6 +39,10 @@ LIGHT_PASSES = (
     ("", "Direct", "RGB", "COLOR", "direct", "RGB"),
     ("", "Indirect", "RGB", "COLOR", "indirect", "RGB"),
 )
+DENOISER_PASSES = (
+    ("", "Denoising Albedo", "RGB", "COLOR", "denoise_albedo", "RGB"),
+    ("", "Denoising Normal", "XYZ", "VECTOR", "denoise_normal", "XYZ"),
+)
 FAR = 1e10  # Blender's depth of the background
 # The phases that take most of their tools' time; others do not move the bar.
 MAIN_PHASES = ("VPLs", "candidates", "photons", "samples")
@@ -48,7 +52,9 @@ SHARES = dict(zip(("export", *TOOLS), (0.05, 0.05, 0.05, 0.25, 0.6), strict=True
 
 def passes_of(scene, view_layer):
     chosen = [p for p in PASSES if getattr(view_layer, p[0], False)]
-    return chosen + (list(LIGHT_PASSES) if scene.bnvpl.light_passes else [])
+    chosen += LIGHT_PASSES if scene.bnvpl.light_passes else ()
+    chosen += DENOISER_PASSES if scene.bnvpl.for_denoiser else ()
+    return chosen
 
 
 def _values(image, name: str, components: str, kind: str) -> np.ndarray:

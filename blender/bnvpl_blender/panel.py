@@ -56,6 +56,7 @@ class BNVPL_PT_render(EnginePanel, bpy.types.Panel):
         for name in ("preset", "vpls", "samples", "seed", "view"):
             layout.prop(own, name)
         layout.prop(context.scene.render, "film_transparent")
+        layout.prop(own, "for_denoiser")
         layout.prop(own, "keep_files")
         if own.keep_files:
             layout.prop(own, "folder")

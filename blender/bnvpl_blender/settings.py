@@ -53,6 +53,11 @@ class BNVPL_Settings(bpy.types.PropertyGroup):
     light_passes: bpy.props.BoolProperty(
         name="Direct and Indirect", description="Direct and indirect light as passes"
     )
+    for_denoiser: bpy.props.BoolProperty(
+        name="For Denoiser",
+        description="Noise that is independent between pixels, with albedo and normal as passes, "
+        "for the Denoise node",
+    )
     keep_files: bpy.props.BoolProperty(
         name="Keep Files",
         description="Keep scene, VPLs, image and a script that renders them again",
@@ -86,6 +91,7 @@ def request_of(scene: bpy.types.Scene, layers: tuple[str, ...]) -> Request:
         threads=render.threads if render.threads_mode == "FIXED" else 0,
         layers=layers,
         transparent=render.film_transparent,
+        for_denoiser=own.for_denoiser,
     )
 
 

@@ -65,6 +65,7 @@ class Request:
     threads: int = 0
     layers: tuple[str, ...] = ()
     transparent: bool = False
+    for_denoiser: bool = False
 
 
 def find_tool(tool: str, folder: str) -> str:
@@ -93,6 +94,8 @@ def commands(request: Request) -> list[list[str]]:
     render += ["--spp", str(request.samples or preset.samples), *preset.render, *common]
     if request.transparent:
         render += ["--transparent", "on"]
+    if request.for_denoiser:
+        render += ["--for-denoiser", "on"]
     if request.layers:
         render += ["--layers", ",".join(request.layers)]
     return [

@@ -267,7 +267,7 @@ class FilesTest(RenderTest):
     def test_passes_and_depth_of_field(self) -> None:
         scene = corner()
         add_lamp("POINT", 200)
-        scene.bnvpl.light_passes = True
+        scene.bnvpl.light_passes = scene.bnvpl.for_denoiser = True
         layer = bpy.context.view_layer
         layer.use_pass_z = layer.use_pass_normal = layer.use_pass_position = True
         scene.camera.data.dof.use_dof = True
@@ -283,6 +283,9 @@ class FilesTest(RenderTest):
         on_floor = of["Normal.Z"] > 0.999
         self.assertGreater(on_floor.mean(), 0.1)
         self.assertLess(np.abs(of["Position.Z"][on_floor]).max(), 0.01)
+        np.testing.assert_allclose(of["Denoising Normal.Z"][on_floor], 1, atol=0.01)
+        self.assertGreater(of["Denoising Albedo.R"][on_floor].min(), 0.5)
+        self.assertIn("--for-denoiser on", (folder / "render.sh").read_text())
         self.assertIn("focus_distance", (folder / "scene.toml").read_text())
 
     def test_viewport(self) -> None:
