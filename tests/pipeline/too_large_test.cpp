@@ -44,6 +44,14 @@ TEST_F(TooLarge, CountsAndFilms) {
   EXPECT_EQ(listing(), std::vector<std::string>{});
 }
 
+TEST_F(TooLarge, Contributions) {
+  makeStages(scene_);
+  fail("vpl-inspect",
+       "contributions " + path("lit.vpl") + " --scene " + scene_ + " -o " + path("x.json") +
+           " --size 16384x16384",
+       kExitMemory, {"contributions to 16384x16384 pixels needs about", "--size"}, kFourGib);
+}
+
 TEST_F(TooLarge, LightGroupsCount) {
   write("groups.toml", "[[mesh]]\nfile = " + scene_ +
                            "\n[[light]]\ntype = \"point\"\nposition = [0.1, 0.3, 0.1]\n"

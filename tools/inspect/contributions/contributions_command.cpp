@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "core/memory.h"
 #include "formats/vpl/vpl_io.h"
 #include "tools/common/files/depfile.h"
 #include "tools/common/files/run_files.h"
@@ -62,6 +63,10 @@ int runContributions(const ContributionRequest& command, const ToolOptions& tool
 
   ContributionOptions options{.film = scene.film, .perPixel = command.perPixel};
   options.clamp = static_cast<float>(command.clamp);
+  // A listed VPL takes 8 bytes in the table, two numbers of the JSON, and their text (measured).
+  const double listed = static_cast<double>(std::min<size_t>(options.perPixel, lit.size()));
+  requireMemory(double(scene.film.width) * scene.film.height * (200.0 + 60.0 * listed),
+                "contributions to " + sizeText(scene.film) + " pixels", "choose a smaller --size");
   const RayScene rays(scene);
   const Contributions found = [&] {
     ProgressMeter meter("rows of pixels", scene.film.height, progressStyle(tool));
