@@ -14,8 +14,9 @@ namespace {
 constexpr int kSentSide = 64;  // side of a block, in pixels
 constexpr std::chrono::seconds kRetryEvery{1};
 constexpr double kFinishS = 10.0;
-// Rest after each block, so that sending takes one per cent of a thread's time.
-constexpr double kRestForEach = 99.0, kLongestRestS = 0.1;
+// Rest after each block, so that sending, and what the system does for it, takes less than one per
+// cent of a thread's time.
+constexpr double kRestForEach = 199.0, kLongestRestS = 0.1;
 
 uint32_t blocks(uint32_t pixels) { return (pixels + kSentSide - 1) / kSentSide; }
 
@@ -115,6 +116,7 @@ bool LiveViewer::sendNext(std::unique_lock<std::mutex>& lock) {
   } else {
     lock.lock();
   }
+  const double startS = nowS();
   // Round robin, so that no block waits for ever.
   while (!changed_[next_]) next_ = (next_ + 1) % changed_.size();
   const size_t block = next_;
@@ -127,7 +129,6 @@ bool LiveViewer::sendNext(std::unique_lock<std::mutex>& lock) {
     pixels.insert(pixels.end(), row, row + std::ptrdiff_t{3} * (box.x1 - box.x0));
   }
   lock.unlock();
-  const double startS = nowS();
   const bool taken = connection_.send(tevUpdateImage(name_, box, pixels));
   const double restS = std::min(kLongestRestS, kRestForEach * (nowS() - startS));
   lock.lock();
