@@ -39,7 +39,18 @@ def pack(path: Path) -> tuple[dict[str, int], str]:
     length; for each row its place on the film (NaN outside) and the light that it brings.
     """
     found = read(path)
+    try:
+        return packed(found)
+    except (KeyError, TypeError, ValueError, OverflowError) as e:
+        raise ReportError(
+            f"{path}: damaged: {type(e).__name__} {e}; make it again by vpl-inspect contributions"
+        ) from e
+
+
+def packed(found: dict[str, Any]) -> tuple[dict[str, int], str]:
     pixels, rows = found["pixels"], found["rows"]
+    if len(pixels["rows"]) != found["width"] * found["height"]:
+        raise ValueError("the lists are not as many as the pixels")
     per_pixel = max(1, *(len(listed) for listed in pixels["rows"]))
     row_of = np.full((len(pixels["rows"]), per_pixel), NO_ROW, "<u4")
     share = np.zeros(row_of.shape, "<f2")

@@ -155,7 +155,7 @@ def view_html(
                     "element": at,
                 }
             )
-    explorer, sizes = explorer_html(scene, view, index)
+    explorer, sizes = explorer_html(scene, view, index, size)
     views.append(
         {
             "title": f"{scene['title']}, {view['title']}",
@@ -182,12 +182,18 @@ def view_html(
 
 
 def explorer_html(
-    scene: dict[str, Any], view: dict[str, Any], index: int
+    scene: dict[str, Any], view: dict[str, Any], index: int, size: tuple[int, int]
 ) -> tuple[str, dict[str, Any] | None]:
     """The place of the explorer of VPLs with its data, and their sizes; nothing without a list."""
     if not view["contributions"]:
         return "", None
     sizes, data = contributions.pack(view["contributions"])
+    width, height = sizes["width"], sizes["height"]
+    if abs(width * size[1] - height * size[0]) > size[0]:  # more than rounding of the height
+        raise ReportError(
+            f"{view['contributions']}: {width}x{height} pixels are not of the shape of the images' "
+            f"{size[0]}x{size[1]}; make it for the same view"
+        )
     at = f"contributions-{index}"
     label = escape(f"{scene['title']}, {view['title']}: which VPLs light what")
     html = (

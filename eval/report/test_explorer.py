@@ -116,6 +116,10 @@ class ListTest(unittest.TestCase):
     def test_bad_lists(self) -> None:
         self.assertIn("contributions.json: no JSON", self.fails("{"))
         self.assertIn("no list of contributions", self.fails({"format": "other"}))
+        self.assertIn("damaged: KeyError", self.fails({**contributions(), "pixels": {}}))
+        self.assertIn("damaged: ", self.fails({**contributions(), "width": 5}))
+        wide = {**contributions(), "width": 12, "height": 1}
+        self.assertIn("12x1 pixels are not of the shape of the images' 8x6", self.fails(wide))
         self.assertIn("version 2", self.fails({**contributions(), "version": 2}))
 
 

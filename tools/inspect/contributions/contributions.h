@@ -39,6 +39,9 @@ struct Contributions {
 Contributions contributionsOf(const RayScene& rays, const VplTable& lit,
                               const ContributionOptions& options, const ProgressFn& progress);
 
+// Memory in bytes that the contributions of `rows` VPLs and their JSON take.
+double memoryOfContributions(const ContributionOptions& options, size_t rows);
+
 // The film of the table's default size.
 Film contributionFilm(const Film& scene);
 

@@ -4,15 +4,13 @@
 #include <memory>
 
 #include "core/memory.h"
-#include "formats/vpl/vpl_io.h"
 #include "tools/common/files/depfile.h"
-#include "tools/common/files/run_files.h"
 #include "tools/common/options/film_size.h"
 #include "tools/common/options/help.h"
 #include "tools/common/run/exit_codes.h"
-#include "tools/common/stage/scene_options.h"
 #include "tools/inspect/command.h"
 #include "tools/inspect/contributions/contributions_json.h"
+#include "tools/inspect/rows_on_scene.h"
 
 namespace bnvpl {
 namespace {
@@ -52,39 +50,32 @@ CLI::App* addContributionOptions(CLI::App& cli, ContributionRequest& c) {
 int runContributions(const ContributionRequest& command, const ToolOptions& tool) {
   Summary summary("vpl-inspect");
   RunFiles used;
-  used.reads("file", command.file).reads("--scene", command.scene.file);
-  used.writes("-o", command.output, {OutputKind::Contributions}).writes(tool).check();
-  const VplTable lit = readVpl(command.file, VplStage::Lit);
-  Scene scene = loadSceneFor(command.scene, Warnings::Hold);
-  used.ready(scene.files);
-  requireSameScene(command.file, lit.sceneHash, scene,
-                   "name the scene it was made from, or rerun vpl-place");
+  used.writes("-o", command.output, {OutputKind::Contributions}).writes(tool);
+  RowsOnScene input = readRowsOnScene(command.file, command.scene, VplStage::Lit, used);
+  const VplTable& table = input.rows;
+  Scene& scene = input.scene;
   scene.film = command.size.empty() ? contributionFilm(scene.film) : parseSize(command.size);
 
   ContributionOptions options{.film = scene.film, .perPixel = command.perPixel};
   options.clamp = static_cast<float>(command.clamp);
-  // A listed VPL takes 8 bytes in the table, two numbers of the JSON, and their text (measured).
-  const double listed = static_cast<double>(std::min<size_t>(options.perPixel, lit.size()));
-  requireMemory(double(scene.film.width) * scene.film.height * (200.0 + 60.0 * listed),
+  requireMemory(memoryOfContributions(options, table.size()),
                 "contributions to " + sizeText(scene.film) + " pixels", "choose a smaller --size");
   const RayScene rays(scene);
   const Contributions found = [&] {
     ProgressMeter meter("rows of pixels", scene.film.height, progressStyle(tool));
-    return contributionsOf(rays, lit, options, meter.callback());
+    return contributionsOf(rays, table, options, meter.callback());
   }();
-  const Json list = contributionsJson(found, lit, rowsInView(lit, rays), options.clamp);
+  const Json list = contributionsJson(found, table, rowsInView(table, rays), options.clamp);
 
   OutputSet files;
   files.add(command.output).write(jsonText(list) + "\n");
-  std::vector<fs::path> read = scene.files;
-  read.push_back(command.file);
-  addDepfile(files, tool.depfile, command.output, read);
+  addDepfile(files, tool.depfile, command.output, input.files);
   const size_t lighting = static_cast<size_t>(
       std::ranges::count_if(found.radiance, [](double light) { return light > 0.0; }));
   char line[128];
-  std::snprintf(line, sizeof line, "%zu of %zu rows light the %u x %u pixels", lighting, lit.size(),
-                scene.film.width, scene.film.height);
-  summary.add("rows", lit.size(), line);
+  std::snprintf(line, sizeof line, "%zu of %zu rows light the %u x %u pixels", lighting,
+                table.size(), scene.film.width, scene.film.height);
+  summary.add("rows", table.size(), line);
   summary.add("rows_that_light", lighting);
   summary.finish(tool, files);
   return kExitOk;

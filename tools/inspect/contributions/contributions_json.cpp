@@ -22,9 +22,7 @@ double rounded(double value) {
 Json rowsJson(const std::vector<RowInView>& rows, const std::vector<double>& radiance) {
   Json x = Json::array(), y = Json::array(), inSight = Json::array(), light = Json::array();
   for (size_t i = 0; i < rows.size(); ++i) {
-    const auto& [film, sight] = rows[i];
-    const bool onFilm =
-        film.depth > 0.0f && film.x >= 0.0f && film.x <= 1.0f && film.y >= 0.0f && film.y <= 1.0f;
+    const auto& [film, sight, onFilm] = rows[i];
     x.push_back(onFilm ? Json(rounded(double{film.x})) : Json());
     y.push_back(onFilm ? Json(rounded(double{film.y})) : Json());
     inSight.push_back(sight == RowSight::InSight || sight == RowSight::BackInSight);

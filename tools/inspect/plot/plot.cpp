@@ -136,7 +136,7 @@ std::vector<RowInView> rowsInView(const VplTable& table, const RayScene& rays) {
     const bool faces = dot(table.normal[i], scene.camera.position - position) > 0.0f;
     const bool inside =
         film.depth > 0.0f && film.x >= 0.0f && film.x <= 1.0f && film.y >= 0.0f && film.y <= 1.0f;
-    rows[i] = {film, faces ? RowSight::Outside : RowSight::FacingAway};
+    rows[i] = {film, faces ? RowSight::Outside : RowSight::FacingAway, inside};
     if (!inside) return;
     const Vec3 side = faces ? table.normal[i] : -table.normal[i];
     const bool hidden = rays.occluded(scene.camera.position, rays.offsetOrigin(position, side));
@@ -156,7 +156,7 @@ std::vector<Dot> visibleDots(const VplTable& table, const RayScene& rays,
   const auto height = static_cast<float>(rays.scene().film.height);
   std::vector<Dot> visible;
   for (size_t i = 0; i < rows.size(); ++i) {
-    const auto& [film, sight] = rows[i];
+    const auto& [film, sight, _] = rows[i];
     const bool back = sight == RowSight::BackInSight;
     counts.drawn += sight == RowSight::InSight;
     counts.facingAway += sight == RowSight::FacingAway || back;

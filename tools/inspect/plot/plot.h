@@ -24,6 +24,7 @@ enum class RowSight : uint8_t { InSight, FacingAway, BackInSight, Occluded, Outs
 struct RowInView {
   RasterPoint film;
   RowSight sight;
+  bool onFilm;  // whether it projects onto the film, hidden or not
 };
 std::vector<RowInView> rowsInView(const VplTable& table, const RayScene& rays);
 

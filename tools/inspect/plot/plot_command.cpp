@@ -3,17 +3,15 @@
 #include <memory>
 
 #include "formats/image/png_io.h"
-#include "formats/vpl/vpl_io.h"
 #include "tools/common/files/depfile.h"
-#include "tools/common/files/run_files.h"
 #include "tools/common/options/choice.h"
 #include "tools/common/options/film_size.h"
 #include "tools/common/options/help.h"
 #include "tools/common/run/exit_codes.h"
-#include "tools/common/stage/scene_options.h"
 #include "tools/inspect/command.h"
 #include "tools/inspect/contributions/contributions.h"
 #include "tools/inspect/plot/plot.h"
+#include "tools/inspect/rows_on_scene.h"
 
 namespace bnvpl {
 
@@ -60,21 +58,19 @@ CLI::App* addPlotOptions(CLI::App& cli, PlotRequest& c) {
 int runPlot(const PlotRequest& command, const ToolOptions& tool) {
   Summary summary("vpl-inspect");
   RunFiles used;
-  used.reads("file", command.file).reads("--scene", command.scene.file);
-  used.writes("-o", command.output, {OutputKind::Png}).writes(tool).check();
-  const VplTable table = readVpl(command.file);
-  Scene scene = loadSceneFor(command.scene, Warnings::Hold);
-  used.ready(scene.files);
-  requireSameScene(command.file, table.sceneHash, scene,
-                   "name the scene it was made from, or rerun vpl-place");
+  used.writes("-o", command.output, {OutputKind::Png}).writes(tool);
+  const bool byContribution = command.plot.colour == DotColour::Contribution;
+  RowsOnScene input =
+      readRowsOnScene(command.file, command.scene,
+                      byContribution ? std::optional(VplStage::Lit) : std::nullopt, used);
+  const VplTable& table = input.rows;
+  Scene& scene = input.scene;
   if (!command.size.empty()) scene.film = parseSize(command.size);
   PlotOptions options = command.plot;
   if (!command.colourGiven && table.stage == VplStage::Lit) options.colour = DotColour::Flux;
 
   const RayScene rays(scene);
-  if (options.colour == DotColour::Contribution) {
-    if (table.stage != VplStage::Lit)
-      throw InputError("--color contribution needs lit rows; run vpl-estimate first");
+  if (byContribution) {
     ProgressMeter meter("rows of pixels", contributionFilm(scene.film).height, progressStyle(tool));
     options.contributions =
         contributionsOf(rays, table, {.film = contributionFilm(scene.film)}, meter.callback())
@@ -86,9 +82,7 @@ int runPlot(const PlotRequest& command, const ToolOptions& tool) {
   canvas.paint(std::move(dots), static_cast<float>(options.dotPixels));
   OutputSet files;
   writePng(files.add(command.output), canvas.width, canvas.height, canvas.rgb8());
-  std::vector<fs::path> read = scene.files;
-  read.push_back(command.file);
-  addDepfile(files, tool.depfile, command.output, read);
+  addDepfile(files, tool.depfile, command.output, input.files);
 
   char line[160];
   std::snprintf(line, sizeof line,
