@@ -22,6 +22,7 @@ ROOT = Path(__file__).resolve().parents[1]
 SCENE = ROOT / "scenes/gltf-room/room.glb"
 PICTURE = ROOT / "docs/images/room.jpg"
 WIDTH, HEIGHT = 1600, 900
+SPP = "4"
 EXPOSURE = "0"
 FONT = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf"
 
@@ -66,7 +67,7 @@ def main() -> None:
         cpu_s += tools.run("vpl-eliminate", "c.vpl", "-o", "v.vpl", "-n", "3k")
         lit = ("v.vpl", "-o", "l.vpl", "--photons", "10M")
         cpu_s += tools.run("vpl-estimate", scene, *lit)
-        ours = ("l.vpl", "-o", "ours.exr", *png, "ours.png", "--spp", "16")
+        ours = ("l.vpl", "-o", "ours.exr", *png, "ours.png", "--spp", SPP)
         cpu_s += tools.run("vpl-render", scene, *ours)
         path = ("--integrator", "path", "-o", "path.exr", *png, "path.png")
         pilot_s = tools.run("vpl-render", scene, *path, "--spp", "4")

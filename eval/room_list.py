@@ -24,15 +24,25 @@ OURS = tuple(
 
 
 @dataclass(frozen=True)
-class LivingRoom(gallery.Scene):
+class ElsewhereScene(gallery.Scene):
+    folder: str = ""  # environment variable that names the folder of `file`
+
     @property
     def path(self) -> Path:
-        return Path(os.environ.get("LIVING_ROOM_DIR", "/nowhere")) / self.file
+        return Path(os.environ.get(self.folder, "/nowhere")) / self.file
 
 
 SCENES = (
     *OURS,
-    LivingRoom("living-room-diffuse", "Living room, diffuse", "scene.toml"),
+    ElsewhereScene(
+        "living-room-diffuse", "Living room, diffuse", "scene.toml", folder="LIVING_ROOM_DIR"
+    ),
+    ElsewhereScene(
+        "sun-room", "Class room in the sun, diffuse", "room.toml", folder="SUN_ROOM_DIR"
+    ),
+    ElsewhereScene(
+        "sun-room-sky", "Class room, sky image with the sun", "room-sky.toml", folder="SUN_ROOM_DIR"
+    ),
     *gallery.SCENES,
 )
 

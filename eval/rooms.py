@@ -2,7 +2,7 @@
 """Compares VPLs at default options with path tracing at equal time, room by room, full image.
 
     export PBRT_SCENES=/folder/of/pbrt/scenes LIVING_ROOM_DIR=/folder
-    export SPONZA_DIR=/folder VEACH_AJAR_DIR=/folder
+    export SPONZA_DIR=/folder VEACH_AJAR_DIR=/folder SUN_ROOM_DIR=/folder
     eval/rooms.py --also light guided spread-path cycles
     eval/rooms.py --path-length 6 --also unlit-path guided --no-table veach-ajar-pbrt bathroom
 

@@ -15,6 +15,8 @@ namespace bnvpl {
 namespace {
 
 constexpr size_t kMaxLeaf = 32;          // points
+// Searches begin with this multiple of the squared distance that the last one ended with.
+constexpr float kGuess = 1.3f;
 constexpr size_t kParallelSplit = 8192;  // points from which halves are split side by side
 
 }  // namespace
@@ -106,7 +108,7 @@ void AllNeighbours::visitLeaf(uint32_t leaf, Search& search) const {
     if (distances[at - begin] <= search.worst)
       search.keys.push_back(Search::keyOf(distances[at - begin], index_[at]));
   }
-  const size_t limit = search.worst == INFINITY ? search.count : 2 * search.count;
+  const size_t limit = search.worst == INFINITY ? search.count : 4 * search.count;
   if (search.keys.size() >= limit) search.cut();
 }
 
@@ -114,21 +116,25 @@ void AllNeighbours::visit(uint32_t node, Search& search) const {
   if (!(boxes_[node].distanceSquared(search.centre) <= search.worst)) return;
   if (isLeaf(node)) {
     visitLeaf(node, search);
-    return;
+  } else {
+    visit(2 * node + 1, search);
+    visit(2 * node + 2, search);
   }
-  const uint32_t low = 2 * node + 1, high = low + 1;
-  const bool lowFirst =
-      boxes_[low].distanceSquared(search.centre) <= boxes_[high].distanceSquared(search.centre);
-  visit(lowFirst ? low : high, search);
-  visit(lowFirst ? high : low, search);
 }
 
 // Squared distance within which `count` points lie for certain: as many lie within lastDistance of
 // the last point. The slack covers the rounding.
 float AllNeighbours::boundOf(Vec3 centre, size_t count, const Query& query) const {
-  if (query.lastPoint == Query::kNone || query.lastCount != count) return INFINITY;
+  if (query.lastPoint == Query::kNone || query.lastCount < count) return INFINITY;
   const float distance = length(centre - positionOf(query.lastPoint)) + query.lastDistance;
   return distance * distance * (1.0f + 1e-5f) + std::numeric_limits<float>::min();
+}
+
+// Visits the leaf of the point, and then the tree beside the way up to the root.
+void AllNeighbours::searchFrom(uint32_t leaf, Search& search) const {
+  visitLeaf(leaf, search);
+  for (uint32_t node = leaf; node != 0; node = (node - 1) / 2)
+    visit(node % 2 == 1 ? node + 1 : node - 1, search);
 }
 
 void AllNeighbours::nearest(uint32_t point, size_t count, Query& query,
@@ -138,12 +144,19 @@ void AllNeighbours::nearest(uint32_t point, size_t count, Query& query,
   count = std::min(count, index_.size());
   if (count == 0) return;
   const Vec3 centre = positionOf(point);
-  Search search{centre, count, query.keys, boundOf(centre, count, query)};
-  uint32_t node = leaf_[point];
-  visitLeaf(node, search);
-  for (; node != 0; node = (node - 1) / 2) visit(node % 2 == 1 ? node + 1 : node - 1, search);
-  if (query.keys.size() > count) search.cut();
+  const float bound = boundOf(centre, count, query);
+  // The density of points changes slowly, so `count` points are likely to lie within this, too.
+  const float guess =
+      bound == INFINITY ? bound : std::min(bound, kGuess * query.lastDistance * query.lastDistance);
+  Search search{centre, count, query.keys, guess};
+  searchFrom(leaf_[point], search);
+  if (query.keys.size() < count && guess < bound) {
+    query.keys.clear();
+    search.worst = bound;
+    searchFrom(leaf_[point], search);
+  }
   std::sort(query.keys.begin(), query.keys.end());
+  query.keys.resize(count);
   for (const uint64_t key : query.keys)
     found.push_back({Search::distanceSquared(key), static_cast<uint32_t>(key)});
   query.lastPoint = point;

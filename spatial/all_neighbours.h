@@ -20,7 +20,8 @@ class AllNeighbours {
   explicit AllNeighbours(std::span<const Vec3> points);
 
   // The state of consecutive queries. The neighbours of the last point bound the distance to those
-  // of the next, which is much faster where consecutive points are near each other.
+  // of the next, which is much faster where consecutive points are near each other and `count`
+  // stays.
   struct Query {
     static constexpr uint32_t kNone = UINT32_MAX;
     uint32_t lastPoint = kNone;
@@ -49,6 +50,7 @@ class AllNeighbours {
     return {x_[place], y_[place], z_[place]};
   }
   float boundOf(Vec3 centre, size_t count, const Query& query) const;
+  void searchFrom(uint32_t leaf, Search& search) const;
   bool isLeaf(uint32_t node) const { return node >= firstLeaf_; }
   uint32_t beginOf(uint32_t leaf) const { return leafBegin_[leaf - firstLeaf_]; }
   uint32_t endOf(uint32_t leaf) const { return leafBegin_[leaf - firstLeaf_ + 1]; }

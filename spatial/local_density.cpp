@@ -95,9 +95,12 @@ std::vector<float> surfaceShares(std::span<const Vec3> position, std::span<const
                                  unsigned k, const ProgressFn& progress) {
   const AllNeighbours points(position);
   const auto makeFind = [&points] {
-    return [&points, query = AllNeighbours::Query{}](uint32_t self, size_t count,
-                                                     std::vector<Neighbour>& nearest) mutable {
-      points.nearest(self, count, query, nearest);
+    // Short and long queries have a state each, so that a long one does not widen the next short
+    // one.
+    return [&points, few = AllNeighbours::Query{}, many = AllNeighbours::Query{}, least = SIZE_MAX](
+               uint32_t self, size_t count, std::vector<Neighbour>& nearest) mutable {
+      least = std::min(least, count);
+      points.nearest(self, count, count == least ? few : many, nearest);
     };
   };
   return sharesOf(position, normal, k, makeFind, {}, progress);
