@@ -7,7 +7,7 @@ namespace bnvpl {
 static_assert(std::is_trivially_copyable_v<Bsdf> && std::is_trivially_destructible_v<Bsdf>);
 
 float CoatAbove::through(float cosine) const {
-  return 1.0f - weight * ggxAlbedo({Vec3(0.04f), Vec3(1), {}}, cosine, alpha).x;
+  return 1.0f - weight * ggxAlbedo(0.04f, 1.0f, cosine, alpha);
 }
 
 void addModel(const MaterialModel& model, const MaterialInputs& inputs, Vec3 weight, Bsdf& out) {

@@ -187,7 +187,10 @@ void Bsdf::add(Vec3 weight, const L& lobe, const CoatAbove& above, uint32_t fram
   }
   if (isBlack(albedo)) return;
   const float most = maxComponent(albedo);
-  new (&lobes_[count_++]) Summand{lobe, weight, above, coatOut, most, frame, group, lobe.smooth()};
+  L prepared = lobe;
+  if constexpr (requires { prepared.prepareFor(Vec3()); }) prepared.prepareFor(frames_[frame].wo);
+  new (&lobes_[count_++])
+      Summand{prepared, weight, above, coatOut, most, frame, group, lobe.smooth()};
   albedo_ += albedo;
   if (group == LobeGroup::Specular) {
     specular_ += most;

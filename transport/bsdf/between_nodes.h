@@ -2,12 +2,13 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 
 namespace bnvpl {
 
-inline float nodeSquared(size_t i, size_t count) {
+constexpr float nodeSquared(size_t i, size_t count) {
   const float t = static_cast<float>(i) / static_cast<float>(count - 1);
   return t * t;
 }
@@ -18,11 +19,17 @@ struct BetweenNodes {
   float share;
 };
 // The nodes around a value, which is clamped to [0, 1].
-inline BetweenNodes betweenSquared(float value, size_t count) {
+template <size_t kCount>
+BetweenNodes betweenSquared(float value) {
+  static constexpr std::array<float, kCount> kNodes = [] {
+    std::array<float, kCount> nodes{};
+    for (size_t i = 0; i < kCount; ++i) nodes[i] = nodeSquared(i, kCount);
+    return nodes;
+  }();
   value = std::clamp(value, 0.0f, 1.0f);
-  const auto t = static_cast<size_t>(std::sqrt(value) * static_cast<float>(count - 1));
-  const size_t node = std::min(count - 2, t);
-  const float low = nodeSquared(node, count), high = nodeSquared(node + 1, count);
+  const auto t = static_cast<size_t>(std::sqrt(value) * static_cast<float>(kCount - 1));
+  const size_t node = std::min(kCount - 2, t);
+  const float low = kNodes[node], high = kNodes[node + 1];
   return {node, std::clamp((value - low) / (high - low), 0.0f, 1.0f)};
 }
 

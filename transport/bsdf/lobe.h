@@ -12,6 +12,8 @@
 //                                   at most cosMirror; called for rough lobes only
 //   bool smooth()                   whether it is a delta lobe: a mirror, or smooth glass
 //   LobeGroup group()               the group it belongs to
+//   void prepareFor(wo)             optional: keeps what depends on wo alone. The other functions
+//                                   then give the same values, faster for this wo
 // wo.z is positive; wi.z is negative below the surface.
 #pragma once
 
@@ -28,6 +30,15 @@ struct MtlModel;
 struct LobeSample {
   Vec3 wi;
   Vec3 weight;  // value * cosine / density; set by smooth lobes only
+};
+
+// An expensive function of the cosine with z, kept for one cosine.
+struct AtCosine {
+  float cosine = -1.0f, value = 0.0f;
+  template <typename Fn>
+  float orElse(float c, const Fn& fn) const {
+    return c == cosine ? value : fn(c);
+  }
 };
 
 inline Vec3 mirrored(Vec3 w) { return {-w.x, -w.y, w.z}; }

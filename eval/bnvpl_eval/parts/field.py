@@ -1,7 +1,7 @@
-"""Compares every gather beside every compensation, on the same virtual lights, scenes and rays.
+"""Compares every gather beside compensations, on the same virtual lights, scenes and rays.
 
 Equal VPLs: without compensation, for each count, the same lit VPLs and samples a pixel. Equal time:
-with each compensation, at one count, as many samples a pixel as fit into a time that is the same
+with the compensations of its size, at one count, as many samples a pixel as fit into a time that is the same
 for all. Combinations that vpl-render refuses are listed with its reason.
 """
 
@@ -130,6 +130,10 @@ class Field:
         return row
 
 
+def paired(size: dict[str, Any], gather: str, compensate: str) -> bool:
+    return compensate in size["compensations"] or gather in size["gathers_with_any"]
+
+
 def expected_s(rows: list[dict[str, Any]], count: int) -> float:
     """CPU seconds of the next count, if the time grows as before; in proportion after one row."""
     if not rows:
@@ -198,6 +202,8 @@ def note(size: dict[str, Any], run: Field) -> str:
         f"Equal VPLs: no compensation, spp {size['spp']}.",
         f"Equal time: {size['time_s']} CPU seconds of vpl-render, {size['equal_time_vpls']} VPLs.",
         f"{size['seeds']} seeds.",
+        f"{', '.join(size['gathers_with_any'])} also with compensations other than "
+        f"{' and '.join(size['compensations'])}.",
     ]
     if run.skipped:
         parts.append(f"Left out, as they take too long: {'; '.join(run.skipped)}.")
@@ -217,6 +223,8 @@ def run(context: Context) -> None:
         shown = []
         for compensate in compensations:
             for gather in gathers:
+                if not paired(context.size, gather, compensate):
+                    continue
                 context.say(f"field: {view.name}, {gather}, {compensate}, equal time")
                 row = all_of.at_equal_time(view, gather, compensate)
                 shown += [row] if row else []

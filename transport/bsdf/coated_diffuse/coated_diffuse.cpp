@@ -5,8 +5,6 @@
 
 namespace bnvpl {
 
-namespace {}  // namespace
-
 void addLobes(const CoatedDiffuseModel& model, const MaterialInputs& inputs, Vec3 weight,
               Bsdf& out) {
   const Ggx ggx = ggxOf(model.roughness, inputs);

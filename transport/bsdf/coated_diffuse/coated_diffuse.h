@@ -10,12 +10,14 @@ namespace bnvpl {
 struct CoatedBase {
   Vec3 scale;  // factor of the transmittances at wo and wi, 1/sr: theory.md, eq. 2
   float ior = 1.5f, alpha = 0.0f;
+  AtCosine throughAtWo = {};
 
   bool smooth() const { return false; }
   LobeGroup group() const { return LobeGroup::Rough; }
+  void prepareFor(Vec3 wo) { throughAtWo = {wo.z, through(wo.z)}; }
   float through(float cosine) const { return 1.0f - dielectricAlbedo(cosine, alpha, ior); }
   Vec3 value(Vec3 wo, Vec3 wi, Transport) const {
-    return wi.z > 0.0f ? scale * (through(wo.z) * through(wi.z)) : Vec3{};
+    return wi.z > 0.0f ? scale * (throughFrom(wo) * through(wi.z)) : Vec3{};
   }
   float pdf(Vec3, Vec3 wi) const { return pdfCosineHemisphere(wi.z); }
   bool sample(Vec3, float, Point2 at, LobeSample& out) const {
@@ -26,7 +28,12 @@ struct CoatedBase {
     return scale * (through(wo.z) * kPi * (1.0f - dielectricMeanAlbedo(alpha, ior)));
   }
   Vec3 bound(Vec3 wo, float maxCosine, float) const {
-    return scale * (through(wo.z) * std::max(0.0f, maxCosine));
+    return scale * (throughFrom(wo) * std::max(0.0f, maxCosine));
+  }
+
+ private:
+  float throughFrom(Vec3 wo) const {
+    return throughAtWo.orElse(wo.z, [this](float cosine) { return through(cosine); });
   }
 };
 

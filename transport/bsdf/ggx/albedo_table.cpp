@@ -14,9 +14,11 @@ namespace {
 // Nodes are denser where cosine and alpha are small.
 constexpr size_t kCosines = 24, kAlphas = 28, kIors = 13;
 constexpr float kMinCosine = 1e-4f;
-BetweenNodes ofCosine(float c) { return betweenSquared(c, kCosines); }
-BetweenNodes ofAlpha(float a) { return betweenSquared(a, kAlphas); }
-BetweenNodes ofIor(float ior) { return betweenSquared((ior - 1.0f) / (kMaxAlbedoIor - 1.0f), kIors); }
+BetweenNodes ofCosine(float c) { return betweenSquared<kCosines>(c); }
+BetweenNodes ofAlpha(float a) { return betweenSquared<kAlphas>(a); }
+BetweenNodes ofIor(float ior) {
+  return betweenSquared<kIors>((ior - 1.0f) / (kMaxAlbedoIor - 1.0f));
+}
 
 // Calls fn(cosine at the facet, weight). Weights sum to the albedo of facets that reflect all
 // light. Normals on one side of the plane of incidence suffice, by symmetry.
@@ -163,6 +165,11 @@ SchlickFresnel schlickOf(Vec3 eta, Vec3 k) {
 Vec3 ggxAlbedo(const SchlickFresnel& fresnel, float cosine, float alpha) {
   const Parts p = SchlickTable::get().at(cosine, alpha);
   return max(Vec3(), min(Vec3(1), fresnel.f0 * p.f0 + fresnel.f90 * p.f90 - fresnel.a * p.a));
+}
+
+float ggxAlbedo(float f0, float f90, float cosine, float alpha) {
+  const Parts p = SchlickTable::get().at(cosine, alpha);
+  return std::clamp(f0 * p.f0 + f90 * p.f90, 0.0f, 1.0f);
 }
 
 float ggxLoss(float cosine, float alpha) {

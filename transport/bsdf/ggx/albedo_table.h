@@ -19,6 +19,8 @@ struct SchlickFresnel {
 SchlickFresnel schlickOf(Vec3 eta, Vec3 k);
 
 Vec3 ggxAlbedo(const SchlickFresnel& fresnel, float cosine, float alpha);
+// The same for one channel with a = 0.
+float ggxAlbedo(float f0, float f90, float cosine, float alpha);
 
 // The loss of facets that reflect all light, 1 - albedo; its cosine-weighted mean, and its maximum.
 float ggxLoss(float cosine, float alpha);

@@ -52,8 +52,8 @@ struct Table {
 
 float layeredAlbedo(float cosine, float f0, float f90, float alpha) {
   static const Table table;
-  const BetweenNodes f = betweenSquared(f0, kF0s), g = betweenSquared(f90, kF90s),
-                     a = betweenSquared(alpha, kAlphas), c = betweenSquared(cosine, kCosines);
+  const BetweenNodes f = betweenSquared<kF0s>(f0), g = betweenSquared<kF90s>(f90),
+                     a = betweenSquared<kAlphas>(alpha), c = betweenSquared<kCosines>(cosine);
   float sum = 0.0f;
   for (size_t corner = 0; corner < 16; ++corner) {
     const auto up = [&](size_t bit) { return (corner >> bit) & 1; };

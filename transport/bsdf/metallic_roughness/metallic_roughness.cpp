@@ -21,12 +21,11 @@ float LayeredBase::layer(float cosine) const { return f0 + (f90 - f0) * schlickW
 
 float LayeredBase::unlayered(float cosine) const {
   if (!transmitted) return 1.0f - f0 - (f90 - f0) * schlickOverHemisphere(cosine);
-  const SchlickFresnel through{Vec3(1.0f - f0), Vec3(1.0f - f90), {}};
-  return ggxAlbedo(through, cosine, alpha).x;
+  return ggxAlbedo(1.0f - f0, 1.0f - f90, cosine, alpha);
 }
 
 float LayeredBase::kept(float cosine) const {
-  const float reflected = ggxAlbedo({Vec3(f0), Vec3(f90), {}}, cosine, alpha).x;
+  const float reflected = ggxAlbedo(f0, f90, cosine, alpha);
   const float base = unlayered(cosine);
   return base > 1.0f - reflected ? (1.0f - reflected) / base : 1.0f;
 }
@@ -34,7 +33,7 @@ float LayeredBase::kept(float cosine) const {
 Vec3 LayeredBase::value(Vec3 wo, Vec3 wi, Transport) const {
   if (smooth() || (transmitted ? wi.z >= 0.0f : wi.z <= 0.0f)) return {};
   const Vec3 above = transmitted ? below(wi) : wi, h = normalize(wo + above);
-  const float share = (1.0f - layer(dot(wo, h))) * std::min(kept(wo.z), kept(above.z));
+  const float share = (1.0f - layer(dot(wo, h))) * std::min(keptFrom(wo), kept(above.z));
   return colour * (share * (transmitted ? ggx().reflected(wo, above, h) : 1.0f / kPi));
 }
 

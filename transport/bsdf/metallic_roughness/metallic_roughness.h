@@ -13,6 +13,7 @@ struct LayeredBase {
   float f0 = 0.04f, f90 = 1.0f;  // largest channels of the layer's reflectances
   float alpha = 0.0f;            // the layer's roughness
   bool transmitted = false;
+  AtCosine keptAtWo = {};
 
   bool smooth() const { return transmitted && alpha < kSmoothAlpha; }
   LobeGroup group() const { return transmitted ? LobeGroup::Specular : LobeGroup::Rough; }
@@ -21,14 +22,18 @@ struct LayeredBase {
   bool sample(Vec3 wo, float pick, Point2 at, LobeSample& out) const;
   Vec3 albedo(Vec3 wo) const;
   Vec3 bound(Vec3 wo, float maxCosine, float) const {
-    return colour * (kept(wo.z) * std::max(0.0f, maxCosine) / kPi);
+    return colour * (keptFrom(wo) * std::max(0.0f, maxCosine) / kPi);
   }
+  void prepareFor(Vec3 wo) { keptAtWo = {wo.z, kept(wo.z)}; }
 
   float layer(float cosine) const;  // Fresnel reflectance of the layer's facets
   float kept(float cosine) const;   // k(w) of theory.md, eq. 3
 
  private:
   Ggx ggx() const { return {alpha, alpha}; }
+  float keptFrom(Vec3 wo) const {
+    return keptAtWo.orElse(wo.z, [this](float cosine) { return kept(cosine); });
+  }
   float unlayered(float cosine) const;  // albedo of a white base under fresnel_mix
 };
 

@@ -115,6 +115,25 @@ TEST(MetallicRoughness, BaseReflectsItsAlbedo) {
         }
 }
 
+// prepareFor() makes lobes faster and changes no bit, for the prepared direction or for another
+// one.
+template <typename Lobe>
+void expectSamePrepared(const Lobe& lobe) {
+  for (const Vec3 prepared : views())
+    for (const Vec3 wo : views()) {
+      Lobe kept = lobe;
+      kept.prepareFor(prepared);
+      const Vec3 wi = normalize({0.3f, -0.5f, 0.6f});
+      EXPECT_EQ(kept.value(wo, wi, Transport::Radiance), lobe.value(wo, wi, Transport::Radiance));
+      EXPECT_EQ(kept.bound(wo, 0.7f, 1.0f), lobe.bound(wo, 0.7f, 1.0f));
+    }
+}
+
+TEST(MetallicRoughness, PreparedLobesHaveTheSameValues) {
+  expectSamePrepared(LayeredBase{Vec3(0.8f), 0.04f, 1.0f, 0.3f, false});
+  expectSamePrepared(CoatedBase{Vec3(0.2f), 1.5f, 0.2f});
+}
+
 // At grazing angles the appendix reflects more than arrives. Here the energy is preserved
 // (theory.md, eq. 3).
 TEST(MetallicRoughness, WhiteStaysBelowWhatArrives) {

@@ -1,0 +1,60 @@
+"""Tests the table of docs/field.md."""
+
+import sys
+import unittest
+from pathlib import Path
+from typing import Any
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+import field_page  # noqa: E402 (after the path that it needs)
+
+
+def row(gather: str, at: str, vpls: int, relmse: float, **more: Any) -> dict[str, Any]:
+    made: dict[str, Any] = {
+        "part": "field",
+        "scene": "a room",
+        "gather": gather,
+        "compensate": "none",
+        "at": at,
+        "vpls": vpls,
+        "relmse": relmse,
+        "relmse_error": 0.01,
+        "render_cpu_s": vpls / 100,
+        "shadow_rays": vpls / 10,
+    }
+    return made | more
+
+
+class FieldPage(unittest.TestCase):
+    def table(self, *rows: dict[str, Any]) -> list[list[str]]:
+        lines = field_page.table(list(rows)).splitlines()
+        return [[cell.strip() for cell in line.strip("|").split("|")] for line in lines]
+
+    def test_the_least_error_and_those_within_its_noise_are_bold(self) -> None:
+        made = self.table(
+            row("a", "equal time", 1000, 0.30, compensate="near-field"),
+            row("b", "equal time", 1000, 0.315, compensate="near-field"),
+            row("c", "equal time", 1000, 0.33, compensate="near-field"),
+        )
+        self.assertEqual([cells[1] for cells in made[2:]], ["**0.3**", "**0.315**", "0.33"])
+
+    def test_the_default_compensation_is_shown_where_there_is_one(self) -> None:
+        made = self.table(
+            row("a", "equal time", 1000, 0.3, compensate="near-field"),
+            row("a", "equal time", 1000, 0.1),
+            row("a", "equal time", 1000, 0.2, compensate="kollig-keller"),
+            row("b", "equal time", 1000, 0.4),
+        )
+        self.assertEqual([cells[1] for cells in made[2:]], ["**0.3**", "0.4 *"])
+
+    def test_what_a_gather_spends_is_that_at_equal_vpls(self) -> None:
+        made = self.table(
+            row("a", "equal VPLs", 1000, 0.3),
+            row("a", "equal VPLs", 10_000, 0.3),
+            row("a", "equal time", 10_000, 0.2),
+        )
+        self.assertEqual(made[2], ["a", "**0.2** *", "10.0", "1000"])
+
+
+if __name__ == "__main__":
+    unittest.main()
