@@ -71,5 +71,6 @@ def run(context: Context) -> None:
 
 def configuration(context: Context, view: View, gather: str) -> pipeline.Configuration:
     return context.configuration(view, "local").but(
-        render=("--gather", gather, "--compensate", "none", "--fireflies", "keep")
+        spp=context.size["gather"]["spp"],
+        render=("--gather", gather, "--compensate", "none", "--fireflies", "keep"),
     )
