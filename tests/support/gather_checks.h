@@ -30,15 +30,15 @@ struct GatherCase {
                            options))
         .image;
   }
-  // Mean of the sum over all VPLs, which the tests of all gathers share.
-  double meanOfAll(const std::string& light, uint64_t seed) const {
-    const auto [mean, isNew] = all.try_emplace({light, seed});
-    if (isNew) mean->second = meanOf(indirect("all", {{"light", light}}, seed));
-    return mean->second;
+  // The sum over all VPLs, which the tests of all gathers share.
+  const Image& ofAll(const Given& options = {}, uint64_t seed = 1) const {
+    const auto [image, isNew] = all.try_emplace({options, seed});
+    if (isNew) image->second = indirect("all", options, seed);
+    return image->second;
   }
   World world;
   VplTable lit;
-  mutable std::map<std::pair<std::string, uint64_t>, double> all = {};
+  mutable std::map<std::pair<Given, uint64_t>, Image> all = {};
 };
 
 // A box whose blocks hide many VPLs, and a room lit through a door.
@@ -73,7 +73,7 @@ inline void expectEnergyOfAll(const std::string& gather, double tolerance, uint6
       double sum = 0.0, all = 0.0;
       for (uint64_t seed = 1; seed <= seeds; ++seed) {
         sum += meanOf(c->indirect(gather, with(options, {{"light", light}}), seed));
-        all += c->meanOfAll(light, seed);
+        all += meanOf(c->ofAll({{"light", light}}, seed));
       }
       EXPECT_NEAR(sum / all, 1.0, tolerance) << c->world.scene.name() << ", " << light;
     }
@@ -92,7 +92,7 @@ inline void expectMeanOfAll(const std::string& gather, double maxError, const Gi
       double sum = 0.0, squares = 0.0;
       for (uint64_t seed = 1; seed <= kSeeds; ++seed) {
         const double own = meanOf(c->indirect(gather, with(options, {{"light", light}}), seed));
-        const double off = own / c->meanOfAll(light, seed) - 1.0;
+        const double off = own / meanOf(c->ofAll({{"light", light}}, seed)) - 1.0;
         sum += off, squares += off * off;
       }
       const double mean = sum / kSeeds;
@@ -167,7 +167,7 @@ inline double meanOfLayer(const Image& image, const std::string& name) {
 inline void expectSumOverAll(const std::string& gather, const Given& options,
                              const Given& both = {}) {
   for (const GatherCase* c : gatherCases()) {
-    const Image all = c->indirect("all", both, 1), own = c->indirect(gather, with(both, options));
+    const Image &all = c->ofAll(both), own = c->indirect(gather, with(both, options));
     for (const char* channel : {"R", "G", "B"}) {
       const auto &x = *all.find(channel), &y = *own.find(channel);
       for (size_t i = 0; i < x.size(); ++i)
@@ -180,7 +180,7 @@ inline void expectSumOverAll(const std::string& gather, const Given& options,
 // mean.
 inline double relativeMseToAll(const GatherCase& c, const std::string& gather,
                                const Given& options) {
-  const Image all = c.indirect("all"), image = c.indirect(gather, options);
+  const Image &all = c.ofAll(), image = c.indirect(gather, options);
   double squared = 0.0;
   for (size_t i = 0; i < all.pixelCount(); ++i) {
     const double difference = double{(*image.find("G"))[i]} - double{(*all.find("G"))[i]};
