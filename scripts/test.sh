@@ -35,7 +35,6 @@ if (($# > 0)); then
   exit
 fi
 step "tests of the parts" ctest --preset release -LE 'pipeline|faults|eval|cluster'
-step "the tools, through files" ctest --preset release -L pipeline
-step "the tools, through faults" ctest --preset release -L faults
+step "the tools, through files and faults" ctest --preset release -L 'pipeline|faults'
 step "the pipeline on Slurm, if it is here" ctest --preset release -L cluster
 step "evaluation at its quick size" ctest --preset release -L eval
