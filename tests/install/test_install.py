@@ -211,18 +211,22 @@ class Completion(InstalledTest):
         self.assertIn("--max-relmse", fish("vpl-inspect compare --max"))
         self.assertNotIn("--max-relmse", fish("vpl-inspect info --max"))
 
-    def zsh(self, line: str) -> str:
-        """What zsh makes of a line and a tab, in a terminal of its own."""
+    def assert_zsh_shows(self, line: str, wanted: str) -> None:
+        """What zsh makes of a line and a tab, in a terminal of its own, matches a pattern."""
         child, terminal = pty.fork()
         if child == 0:
             os.environ.update(PATH=self.path, TERM="dumb", PS1="", COLUMNS="400")
             os.execvp("zsh", ["zsh", "-f", "-i"])
         text = b""
 
-        def read_until(end: bytes, seconds: float) -> None:
+        def shown() -> str:
+            codes = r"\x1b\[[0-9;?]*[A-Za-z]|\r|\x07|.\x08"
+            return re.sub(codes, "", text.decode(errors="replace"))
+
+        def read_until(pattern: str, seconds: float) -> None:
             nonlocal text
             limit = time.monotonic() + seconds
-            while time.monotonic() < limit and end not in text:
+            while time.monotonic() < limit and not re.search(pattern, shown()):
                 if select.select([terminal], [], [], 0.1)[0]:
                     with contextlib.suppress(OSError):
                         text += os.read(terminal, 65536)
@@ -233,24 +237,23 @@ class Completion(InstalledTest):
             "autoload -Uz compinit; compinit -u -D; print rea''dy\n"
         )
         os.write(terminal, setup.encode())
-        read_until(b"ready", 60)
+        read_until("ready", 60)
         text = b""
         os.write(terminal, line.encode() + b"\t")
-        read_until(b"\0", 4)
+        read_until(wanted, 10)
         os.close(terminal)
         os.waitpid(child, 0)
-        return re.sub(r"\x1b\[[0-9;?]*[A-Za-z]|\r|\x07|.\x08", "", text.decode(errors="replace"))
+        self.assertRegex(shown(), wanted)
 
     @unittest.skipUnless(shutil.which("zsh"), "zsh is not here")
     def test_zsh(self) -> None:
         for tool in TOOLS:
             file = self.share / f"zsh/site-functions/_{tool}"
             run("zsh", "-f", "-n", file)
-        self.assertIn("vpl-place --method", self.zsh("vpl-place --meth"))
-        choices = self.zsh("vpl-place --method ")
-        self.assertRegex(choices, r"camera\s+light")
-        self.assertIn("vpl-inspect compare", self.zsh("vpl-inspect comp"))
-        self.assertIn("--max-relmse", self.zsh("vpl-inspect compare --max-relm"))
+        self.assert_zsh_shows("vpl-place --meth", "vpl-place --method")
+        self.assert_zsh_shows("vpl-place --method ", r"camera\s+light")
+        self.assert_zsh_shows("vpl-inspect comp", "vpl-inspect compare")
+        self.assert_zsh_shows("vpl-inspect compare --max-relm", "--max-relmse")
 
 
 class BuildId(unittest.TestCase):
