@@ -48,7 +48,8 @@ def signature(option: Json) -> str:
     names = [option["letter"]] if option["letter"] else []
     names.append(f"--{option['name']}")
     text = ", ".join(f"\\fB{roff(name)}\\fR" for name in names)
-    return f"{text} \\fI{roff(option['type'])}\\fR" if option["type"] else text
+    choices = roff(option["type"]).replace("|", "|\\:")  # lines may break after a bar
+    return f"{text} \\fI{choices}\\fR" if choices else text
 
 
 def facts(option: Json) -> str:
