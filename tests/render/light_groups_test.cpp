@@ -53,7 +53,8 @@ std::vector<Given> waysToRender() {
                           {{"passes", "3"}, {"spp", "12"}},
                           {{"direct", "each"}, {"light", "disk"}},
                           {{"gather", "matrix-completion"}, {"slices", "8"}, {"columns", "60"}}};
-  for (const char* gather : {"all", "tilecuts", "lightcuts", "stochastic", "lightslice", "ward"})
+  for (const char* gather :
+       {"all", "tilecuts", "lightcuts", "stochastic", "lightslice", "lie", "ward"})
     ways.push_back({{"gather", gather}});
   return ways;
 }
