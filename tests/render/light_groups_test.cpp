@@ -52,6 +52,7 @@ std::vector<Given> waysToRender() {
                           {{"only", "indirect"}},
                           {{"passes", "3"}, {"spp", "12"}},
                           {{"direct", "each"}, {"light", "disk"}},
+                          {{"compensate", "local"}, {"clamp", "4"}},
                           {{"gather", "matrix-completion"}, {"slices", "8"}, {"columns", "60"}}};
   for (const char* gather :
        {"all", "tilecuts", "lightcuts", "stochastic", "lightslice", "lie", "ward"})

@@ -1,19 +1,22 @@
-// Layers of what a gather counts besides clusters and shadow rays.
+// What the methods of an image count besides clusters and shadow rays, and the layers that show it.
 #pragma once
 
 #include <span>
 #include <string>
+#include <vector>
 
 #include "tools/common/options/option.h"
 #include "tools/render/film/layers.h"
 
 namespace bnvpl {
 
-// Lines of --help for the layers of all gathers' own counters.
+// Lines of --help for the layers of all methods' own counters.
 std::string counterList();
-// Layers of the counters of the gather of a run.
+// Counters of a run: those of its gather, then those of its compensation.
+std::vector<Counter> countersOf(const Values& options);
+// Their layers.
 std::span<const Layer> counterLayersOf(const Values& options);
-// Throws UsageError if `layers`, separated by commas, names a counter of another gather.
+// Throws UsageError if `layers`, separated by commas, names a counter of another method.
 void requireOwnCounters(const std::string& layers, std::span<const Layer> own);
 
 }  // namespace bnvpl

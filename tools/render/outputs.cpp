@@ -9,7 +9,9 @@
 #include "formats/image/tonemap.h"
 #include "tools/common/options/exposure.h"
 #include "tools/common/run/result_warning.h"
+#include "tools/render/counter_layers.h"
 #include "tools/render/image_camera.h"
+#include "tools/render/integrator/integrator.h"
 #include "tools/render/stage_options.h"
 
 namespace bnvpl {
@@ -209,6 +211,13 @@ void reportGathered(const RenderResult& result, const Values& options, Summary& 
       percentOf(stats.clamped, stats.indirect), percentOf(stats.compensated, stats.indirect));
   summary.add("mean_clamped", stats.clamped, shown ? line : "");
   summary.add("mean_compensated", stats.compensated);
+  const CompensateMethod* compensate = compensationOf(options);
+  if (compensate && compensate->oneSize) {
+    const double restored = stats.clamped > 0.0 ? stats.compensated / stats.clamped : 1.0;
+    std::snprintf(line, sizeof line, "compensation restored %.1f %% of the clamped light",
+                  100.0 * restored);
+    summary.add("restored_over_removed", restored, shown ? line : "");
+  }
   std::snprintf(
       line, sizeof line,
       "%zu VPLs with flux and %zu emission points, mean cut %.1f, %.1f shadow rays a sample",
@@ -221,7 +230,7 @@ void reportGathered(const RenderResult& result, const Values& options, Summary& 
     std::snprintf(line, sizeof line, "film filter: means over %.2f pixels", stats.filterPixels);
     summary.add("mean_filter_pixels", stats.filterPixels, line);
   }
-  const std::span<const Counter> counters = countersOf(options);
+  const std::vector<Counter> counters = countersOf(options);
   for (size_t k = 0; k < counters.size(); ++k) {
     std::snprintf(line, sizeof line, "%.1f %s a sample", stats.own[k],
                   std::string(counters[k].unit).c_str());

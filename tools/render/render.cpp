@@ -76,6 +76,11 @@ Given withDenoiserOptions(const Given& given) {
     throw UsageError("--for-denoiser: --gather " + options[kGatherSlot] +
                      " shares light between neighbouring pixels; choose another gather");
   }
+  const CompensateMethod* compensate = compensationOf(options);
+  if (compensate && compensate->sharesPixels) {
+    throw UsageError("--for-denoiser: --compensate " + options[kCompensateSlot] +
+                     " shares light between neighbouring pixels; choose another compensation");
+  }
   Given all = given;
   if (options.has(kReuseKey)) {
     if (textGiven(given, kReuseKey.name) && options[kReuseKey] != 1) {
@@ -200,11 +205,6 @@ std::vector<const Layer*> layersOf(const Values& options) {
   return parseLayers(options[kLayersKey],
                      integratorOf(options).gathers && onlyOf(options) != Only::Direct,
                      budgetOf(options).has_value(), options[kOnlyOption], counterLayersOf(options));
-}
-
-std::span<const Counter> countersOf(const Values& options) {
-  if (!options.has(kGatherSlot)) return {};
-  return methodNamed(gatherMethods(), options[kGatherSlot]).counters;
 }
 
 std::vector<std::string> lightGroupsOf(const Values& options, const Scene& scene) {

@@ -25,9 +25,6 @@ std::optional<Budget> budgetOf(const Values& options);
 uint64_t passSppOf(const Values& options);
 const IntegratorMethod& integratorOf(const Values& options);
 
-// What the gather of a run counts besides clusters and shadow rays.
-std::span<const Counter> countersOf(const Values& options);
-
 // Parses "X0,Y0,X1,Y1", a rectangle of pixels that is not empty. Throws UsageError.
 PixelBox parseCrop(const std::string& text);
 // The pixels that --crop names, or none without it. Throws UsageError if the film has others.

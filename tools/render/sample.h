@@ -23,15 +23,15 @@ struct PhotonLight {
   const Vec3* groups = nullptr;             // `all` by light group; null: not told apart
 };
 
-// What a method of --gather counts for a receiver besides clusters and shadow rays. Its mean is a
-// layer of the image, and a number in --stats.
+// What a method of --gather or --compensate counts for a receiver besides clusters and shadow rays.
+// Its mean is a layer of the image, and a number in --stats.
 struct Counter {
   std::string_view name;  // name of the layer; in --stats it is mean_NAME
   std::string_view unit;  // "grid lights": what is counted, in the plural
   std::string_view help;
 };
-inline constexpr size_t kMaxCounters = 3;
-// Counts of a receiver, in the order in which the method declares its counters.
+inline constexpr size_t kMaxCounters = 4;  // all methods of an image together
+// Counts of a receiver, in the order in which its methods declare their counters.
 using Counts = std::array<uint32_t, kMaxCounters>;
 
 // Radiance in W/(m2 sr). The first rough vertex of a camera path is the shading point: mirrors,

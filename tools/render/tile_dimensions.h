@@ -17,6 +17,8 @@ enum TileDimension : uint32_t {
   kDimRoulette = 4,
   // Representatives of a pixel's samples (gather/multidimensional).
   kDimReceivers = 18,
+  // Local virtual lights (compensate/local).
+  kDimLocalLights = 19,
   // Rays for indirect light from a shading point, and those that sample allocation adds: the first
   // for parity 0, the second for parity 1.
   kDimRay = 16,
@@ -37,10 +39,10 @@ enum TileDimension : uint32_t {
 
 namespace dimensions {
 inline constexpr std::array kAll{
-    kDimReceiver,      kDimVpl,          kDimStratum,      kDimPacket,
-    kDimRoulette,      kDimReceivers,    kDimRay,          kDimMoreRays0,
-    kDimMoreRays1,     kDimCameraPath,   kDimEmissionRays, kDimControlRays,
-    kDimDirectSamples, kDimDirectPilots, kDimLight,        kDimParity};
+    kDimReceiver,   kDimVpl,          kDimStratum,     kDimPacket,        kDimRoulette,
+    kDimReceivers,  kDimLocalLights,  kDimRay,         kDimMoreRays0,     kDimMoreRays1,
+    kDimCameraPath, kDimEmissionRays, kDimControlRays, kDimDirectSamples, kDimDirectPilots,
+    kDimLight,      kDimParity};
 constexpr bool distinct() {
   for (size_t i = 0; i < kAll.size(); ++i)
     if (std::count(kAll.begin(), kAll.end(), kAll[i]) != 1) return false;

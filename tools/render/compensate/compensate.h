@@ -11,7 +11,9 @@
 #include "formats/vpl/vpl_table.h"
 #include "spatial/reach_grid.h"
 #include "tools/common/stage/method.h"
+#include "tools/render/gather/gather.h"
 #include "transport/rays.h"
+#include "transport/spatial_light_sampler.h"
 #include "transport/virtual_light_kinds.h"
 #include "transport/vpl_groups.h"
 
@@ -43,7 +45,18 @@ struct Uncovered {
   float perFlux = 0.0f;  // 1/(m2 sr)
 };
 
-// Thread-safe. If both functions are empty, nothing is compensated, and no rays are traced for it.
+// What lights a vertex of a path: lights by shadow rays, and VPLs.
+struct VertexLights {
+  const LightSet& lights;
+  const SpatialLightSampler* spatial;  // distribution of shadow rays; null: by power
+  GatherPoint vpls;
+};
+// Adds light to all receivers of a tile at once. The results have the light and the method's own
+// counts; `cut` counts transfers. Returns the number of rays besides the shadow rays.
+using CompensateTile =
+    std::function<size_t(const TileReceivers&, const VertexLights&, std::span<Gathered>)>;
+
+// Thread-safe. If all functions are empty, nothing is compensated, and no rays are traced for it.
 struct Compensation {
   // Looks up the VPLs at the hits of a batch of rays, so that memory accesses overlap. Skips
   // points that hit nothing.
@@ -53,6 +66,7 @@ struct Compensation {
   std::function<Uncovered(const SurfacePoint& point, float distance,
                           const ReachGrid::Lookup* coverLookup, Rng& rng)>
       uncovered;
+  CompensateTile tile = {};  // takes the place of rays
   explicit operator bool() const { return uncovered != nullptr; }
 };
 
@@ -76,9 +90,11 @@ struct CompensateMethod {
   std::string_view name, summary;
   std::span<const Option> options;
   Compensation (*make)(const CompensateInputs&, const Values&);
+  std::span<const Counter> counters = {};
   // VPLs have commonRadius() instead of their own, so that what they leave out of the light between
   // two points depends on these alone.
   bool oneSize = false;
+  bool sharesPixels = false;  // neighbouring pixels share light, and so noise
 };
 // Defined in the build folder by cmake/Methods.cmake, from the folders beside this file.
 std::span<const CompensateMethod* const> compensateMethods();

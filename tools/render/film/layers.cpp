@@ -98,7 +98,7 @@ constexpr std::array kLayers{
 
 Layer counterLayer(const Counter& counter, size_t index) {
   constexpr std::array<double (*)(const LayerPixel&, size_t), kMaxCounters> kValues{
-      ownCountOf<0>, ownCountOf<1>, ownCountOf<2>};
+      ownCountOf<0>, ownCountOf<1>, ownCountOf<2>, ownCountOf<3>};
   return {counter.name, "", counter.help, kValues.at(index), true};
 }
 

@@ -52,7 +52,7 @@ struct PixelSums {
 };
 struct PixelCounts {
   uint64_t cut = 0, shadowRays = 0, nonFinite = 0;
-  std::array<uint64_t, kMaxCounters> own{};  // by the gather's own counters
+  std::array<uint64_t, kMaxCounters> own{};  // by the methods' own counters
 };
 
 // Statistics of a pixel over the passes (passes.h).
@@ -95,7 +95,7 @@ struct Layer {
   bool ofGroups = false;  // light groups (film_groups.h), which `all` leaves out
 };
 
-// The layer of the gather's counter number `index`.
+// The layer of the counter number `index` of the image's methods.
 Layer counterLayer(const Counter& counter, size_t index);
 
 size_t channelCount(const Layer& layer);
@@ -105,7 +105,7 @@ std::string layerList();
 
 // Parses a comma-separated list of names, or "all" for all layers that the image can have. `vpls`
 // and `passes`: whether it gathers VPLs and is rendered by passes. `shown`: "direct" or "indirect"
-// if the image shows only that light. `counters`: layers of the gather's own counters, which must
+// if the image shows only that light. `counters`: layers of the methods' own counters, which must
 // outlive the result. Throws UsageError for a layer that is unknown or that the image cannot have.
 std::vector<const Layer*> parseLayers(const std::string& list, bool vpls = true,
                                       bool passes = false, std::string_view shown = "all",

@@ -84,7 +84,7 @@ struct GatherMethod {
   std::string_view name, summary;
   std::span<const Option> options;
   Gather (*make)(const GatherInputs&, const Values&);
-  std::span<const Counter> counters = {};  // at most kMaxCounters
+  std::span<const Counter> counters = {};
   // Smooths the gathered light over the film; null or an empty filter: it stays as it is.
   FilmFilter (*filmFilter)(const Values&) = nullptr;
   bool lightGroups = true;  // fills TileReceivers::groupSums

@@ -8,6 +8,7 @@
 #include "core/progress.h"
 #include "formats/vpl/vpl_table.h"
 #include "tools/common/stage/method.h"
+#include "tools/render/compensate/compensate.h"
 #include "tools/render/film/integrator_interface.h"
 #include "tools/render/gather/gather.h"
 #include "tools/render/pixel_filter.h"
@@ -59,7 +60,12 @@ inline const GatherMethod* gatherOf(const Values& options) {
   if (!options.has(kGatherSlot)) return nullptr;
   return &methodNamed(gatherMethods(), options[kGatherSlot]);
 }
-// Its film filter; empty where there is none.
+// The compensation of a run; null where nothing is compensated.
+inline const CompensateMethod* compensationOf(const Values& options) {
+  if (!options.has(kCompensateSlot)) return nullptr;
+  return &methodNamed(compensateMethods(), options[kCompensateSlot]);
+}
+// The gather's film filter; empty where there is none.
 inline FilmFilter gatherFilterOf(const Values& options) {
   const GatherMethod* gather = gatherOf(options);
   return gather && gather->filmFilter ? gather->filmFilter(options) : FilmFilter{};

@@ -40,6 +40,7 @@ double TileIntegrator::render(const TileSamples& tile, const SampleAllocation& a
   if (parts_.directSamples) pilot = parts_.directSamples->pilot(tile, learned.strata);
   double cost = directAlone ? 0.0 : double(count) * cost::kCameraRay;
   if (parts_.gather && only_ != Only::Direct) gatherVpls(tile, points, allocation, pilot.light);
+  if (parts_.compensate && only_ != Only::Direct) cost += compensate(tile, points);
   for (size_t i = 0; i < count; ++i) {
     CameraSample& s = tile.samples[i];
     cost += s.radiance.shadowRays + cost::kCluster * s.radiance.cut;
@@ -147,6 +148,29 @@ void TileIntegrator::gatherVpls(const TileSamples& tile, const ShadingPoints& po
     const GroupSink indirect = tile.samples[i].groups.indirect().times(points.paths[i].throughput);
     for (uint32_t g = 0; g < tile.groups; ++g) indirect.add(g, groups[i * tile.groups + g]);
   }
+}
+
+// Adds the light of compensation for all samples at once. Returns its cost.
+double TileIntegrator::compensate(const TileSamples& tile, const ShadingPoints& points) const {
+  std::vector<Gathered> found(points.bsdf.size());
+  std::vector<Vec3> groups(found.size() * tile.groups);
+  TileReceivers receivers{tile, points.bsdf};
+  if (tile.groups > 0) receivers.groupSums = groups.data();
+  double cost = cost::kBsdfRay * double(parts_.compensate(receivers, found));
+  for (size_t i = 0; i < found.size(); ++i) {
+    RadianceSample& out = tile.samples[i].radiance;
+    const Vec3 throughput = points.paths[i].throughput, light = throughput * found[i].radiance;
+    out.indirect += light;
+    out.compensated += light;
+    out.clamped += throughput * found[i].clamped;
+    out.shadowRays += found[i].shadowRays;
+    cost += cost::kCluster * found[i].cut;
+    for (size_t k = parts_.gatherCounters; k < kMaxCounters; ++k)
+      out.counts[k] = found[i].counts[k - parts_.gatherCounters];
+    const GroupSink indirect = tile.samples[i].groups.indirect().times(throughput);
+    for (uint32_t g = 0; g < tile.groups; ++g) indirect.add(g, groups[i * tile.groups + g]);
+  }
+  return cost;
 }
 
 // The rays of a tile's samples for indirect light.

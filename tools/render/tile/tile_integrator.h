@@ -27,6 +27,9 @@ struct TileParts {
   GatherTile gather;  // VPLs
   bool gathersForFilter = false;  // a film filter smooths their light
   bool gathersPixelSums = false;  // finds the sum over a pixel's samples
+  // Adds light that VPLs leave out to all samples at once. Returns the number of its rays.
+  std::function<size_t(const TileReceivers&, std::span<Gathered>)> compensate = {};
+  size_t gatherCounters = 0;  // the counters of `compensate` follow those of `gather`
   std::unique_ptr<const IndirectRays> rays;
   unsigned raysEach = 0;  // from each shading point
   unsigned reuse = 1;     // samples in a group that reuses its vertices; 1: no reuse
@@ -56,6 +59,7 @@ class TileIntegrator {
                 Rng& rng, const GroupSink& groups) const;
   void gatherVpls(const TileSamples& tile, const ShadingPoints& points,
                   const SampleAllocation& allocation, Vec3 meanDirect) const;
+  double compensate(const TileSamples& tile, const ShadingPoints& points) const;
   double addRays(const TileSamples& tile, const ShadingPoints& points, const LearnedLight& learned,
                  const SampleAllocation& allocation, Vec3 meanDirect) const;
 

@@ -104,6 +104,19 @@ LightKind lightOf(const Values& options, const CompensateMethod* compensate) {
   return kind;
 }
 
+// Adds compensation for all samples of a tile at once, where the method has it.
+void addTileCompensation(const IntegratorInputs& in, const Values& options,
+                         const Compensation& compensation, const GatherPoint& point,
+                         TileParts& out) {
+  if (!compensation.tile) return;
+  out.gatherCounters = gatherOf(options)->counters.size();
+  out.compensate = [fn = compensation.tile,
+                    lights = VertexLights{in.lights, out.spatialLights, point}](
+                       const TileReceivers& receivers, std::span<Gathered> found) {
+    return fn(receivers, lights, found);
+  };
+}
+
 uint64_t causticPhotons(const IntegratorInputs& in, const Values& options) {
   constexpr uint64_t kMaxPhotons = 16000000;  // they take seconds, in each shard
   return in.only == Only::Direct
@@ -117,9 +130,7 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   const bool indirect = in.only != Only::Direct;
   const float clamp = indirect ? options.real32(kClampOption) : 1.0f;
   const auto parts = std::make_shared<Parts>();
-  const CompensateMethod* compensate =
-      options.has(kCompensateSlot) ? &methodNamed(compensateMethods(), options[kCompensateSlot])
-                                   : nullptr;
+  const CompensateMethod* compensate = compensationOf(options);
   const LightKind light = indirect ? lightOf(options, compensate) : LightKind{};
   parts->vpls = makeVplLights(in.lit, in.rays, clamp, light, in.litGroups,
                               compensate && compensate->oneSize ? commonRadius(in.lit) : 0.0f);
@@ -130,7 +141,7 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   // With --only direct, direct samples trace BSDF rays of their own.
   if (options.has(kNearFieldRaysOption) && (compensation || hasSpecularLobes(in.rays.scene())))
     tile.raysEach = static_cast<unsigned>(options[kNearFieldRaysOption]);
-  if (indirect && tile.raysEach > 0) {
+  if (indirect && (tile.raysEach > 0 || compensation.tile)) {
     parts->spatialLights = std::make_unique<const SpatialLightSampler>(
         in.rays, in.lights, in.lit.position, in.lit.normal, in.lit.radius,
         streamKey(in.seed, Stream::SpatialLightSampler), in.progress);
@@ -141,6 +152,7 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   tile.gather = std::move(gather.tile);
   tile.gathersForFilter = static_cast<bool>(gatherFilterOf(options));
   tile.gathersPixelSums = gathersPixelSums(options);
+  if (indirect) addTileCompensation(in, options, compensation, gather.point, tile);
   const bool learned = in.only != Only::Indirect && options[kDirectOption] == "learned";
   const bool controlled = indirect && options[kControlOption] == "vpls";
   const PrimaryPoints film = controlled || learned ? filmRays.all() : PrimaryPoints{};
