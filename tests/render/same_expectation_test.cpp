@@ -141,8 +141,8 @@ TEST(SameExpectation, PathsAndPhotonsInTheCornellBox) {
   const World world = worldOf("cornell/scene.toml", 20, 20);
   for (const unsigned bounces : {1u, 32u}) {
     const Given indirect{{"only", "indirect"}, {"max-bounces", typed(bounces)}};
-    EXPECT_TRUE(sameExpectation(paths(world, with(indirect, {{"spp", "64"}})),
-                                photons(world, with(indirect, {{"spp", "16"}}))))
+    EXPECT_TRUE(sameExpectation(paths(world, with(indirect, {{"spp", "20"}})),
+                                photons(world, with(indirect, {{"spp", "4"}})), {.seeds = 64}))
         << bounces;
   }
 }
@@ -207,8 +207,8 @@ TEST(SameExpectation, PathsAndPhotonsOverNormalMaps) {
   }
   const World world(std::move(scene));
   const Given indirect{{"only", "indirect"}};
-  EXPECT_TRUE(sameExpectation(paths(world, with(indirect, {{"spp", "64"}})),
-                              photons(world, with(indirect, {{"spp", "32"}})), {.seeds = 16}));
+  EXPECT_TRUE(sameExpectation(paths(world, with(indirect, {{"spp", "16"}})),
+                              photons(world, with(indirect, {{"spp", "4"}})), {.seeds = 64}));
 }
 
 // Two estimators of direct light: one light and one ray, and all lights with BSDF rays besides.
@@ -221,20 +221,19 @@ TEST(SameExpectation, DirectLightOfPathsAndOfVplsFromSeveralLights) {
   scene.lights[1].position = {0.3f, 0.45f, 0.1f};
   scene.lights[1].emission = Vec3{0.1f};
   const World world(std::move(scene));
-  const Given byPaths{{"spp", "48"}, {"only", "direct"}}, byVpls{{"spp", "16"},
-                                                                 {"only", "direct"},
-                                                                 {"compensate", "near-field"},
-                                                                 {"near-field-rays", "2"}};
-  EXPECT_TRUE(sameExpectation(paths(world, byPaths), vpls(world, {}, byVpls)));
+  const Given byVpls{
+      {"spp", "16"}, {"only", "direct"}, {"compensate", "near-field"}, {"near-field-rays", "2"}};
+  const Render byPaths = remembered(paths(world, {{"spp", "48"}, {"only", "direct"}}));
+  EXPECT_TRUE(sameExpectation(byPaths, vpls(world, {}, byVpls)));
   // Without VPLs all light is direct. Its samples follow noise and cost, or are three.
   for (const char* count : {"0", "3"}) {
     const Given own{{"spp", "8"}, {"compensate", "none"}, {"direct-samples", count}};
-    EXPECT_TRUE(sameExpectation(paths(world, byPaths), vpls(world, {}, own))) << count;
+    EXPECT_TRUE(sameExpectation(byPaths, vpls(world, {}, own))) << count;
   }
   // The same holds where only direct light is shown.
   const Given few{{"spp", "4"}, {"only", "direct"}, {"fireflies", "keep"}};
   for (const Given& more : {Given{}, Given{{"allocate", "off"}}, Given{{"direct-samples", "3"}}}) {
-    EXPECT_TRUE(sameExpectation(paths(world, byPaths), [&](uint64_t seed) {
+    EXPECT_TRUE(sameExpectation(byPaths, [&](uint64_t seed) {
       return renderVpls(world, {}, with(with(few, more), {{"seed", typed(seed)}})).image;
     })) << more.size();
   }
@@ -278,10 +277,11 @@ TEST(SameExpectation, SampleAllocationAndPathReuse) {
                    {"allocate", balance},
                    {"reuse", reuse}});
     };
+    const Render plain = remembered(with4spp("off", "1"));
     for (const char* balance : {"off", "on"}) {
       for (const char* reuse : {"1", "8"}) {
         if (*reuse == '1' && std::string_view(balance) == "off") continue;
-        EXPECT_TRUE(sameExpectation(with4spp("off", "1"), with4spp(balance, reuse), {.seeds = 48}))
+        EXPECT_TRUE(sameExpectation(plain, with4spp(balance, reuse), {.seeds = 48}))
             << &scene - scenes.data() << ", balance " << balance << ", reuse " << reuse;
       }
     }
@@ -298,12 +298,12 @@ TEST(SameExpectation, NearSpecularLobesAndLearnedLights) {
   for (Material& m : metal.materials)
     if (m.name != "Lamp") m.model = sharpMetal();
   const World coated(std::move(scene)), allMetal(std::move(metal));
-  const Given direct{{"spp", "64"}, {"only", "direct"}};
-  EXPECT_TRUE(sameExpectation(paths(allMetal, direct), vpls(allMetal, {}, direct)));
+  const Given direct{{"only", "direct"}};
+  EXPECT_TRUE(sameExpectation(paths(allMetal, with(direct, {{"spp", "32"}})),
+                              vpls(allMetal, {}, with(direct, {{"spp", "8"}})), {.seeds = 64}));
   const VplTable lit = litVpls(coated);
-  const Given all{{"spp", "32"}};
-  EXPECT_TRUE(sameExpectation(paths(coated, all), [&](uint64_t seed) {
-    return renderVpls(coated, lit, with(all, {{"integrator", "guided"}, {"seed", typed(seed)}}))
+  EXPECT_TRUE(sameExpectation(paths(coated, {{"spp", "64"}}), [&](uint64_t seed) {
+    return renderVpls(coated, lit, {{"integrator", "guided"}, {"spp", "8"}, {"seed", typed(seed)}})
         .image;
   }));
 }
