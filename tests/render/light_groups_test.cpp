@@ -67,7 +67,7 @@ Image rendered(const World& world, const VplTable& lit, const Given& way) {
 
 TEST(LightGroupLayers, AddUpToTheImageWhichTheyLeaveAsItIs) {
   for (const bool shiny : {false, true}) {
-    World world(groupedRoom(24, kNone, shiny));
+    World world(groupedRoom(16, kNone, shiny));
     world.scene.film.transparent = shiny;
     const VplTable lit = litIn(world);
     for (const Given& way : waysToRender()) {

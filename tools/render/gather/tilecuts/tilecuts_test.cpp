@@ -58,7 +58,10 @@ TEST(TileCuts, WithoutToleratedErrorIsTheSumOverAll) {
 // The coarsest cut has much noise but no bias in any part of the image, for any number of samples
 // held in memory together.
 TEST(TileCuts, IsUnbiased) {
-  for (const GatherCase* c : {&cornell(), &door()}) {
+  const Given vpls{{"count", "400"}};  // a cut has 32 clusters of them
+  const GatherCase box("cornell/scene.toml", {25, 19}, vpls),
+      slit("veach-door/scene.toml", {32, 18}, vpls);
+  for (const GatherCase* c : {&box, &slit}) {
     const Given spp{{"spp", "17"}};
     std::array<Image, 4> all, cuts;  // images of one seed see the same points
     for (uint64_t seed = 0; seed < cuts.size(); ++seed) {
@@ -111,6 +114,7 @@ TEST(TileCuts, VisibleLightsHideHalfOfTheError) {
     return renderVpls(c.world, c.lit,
                       {{"gather", gather},
                        {"spp", "4"},
+                       {"crop", "32,8,64,16"},  // the tiles that see the lamp
                        {"compensate", "none"},
                        {"control", "none"},
                        {"fireflies", "keep"},
