@@ -24,7 +24,8 @@ namespace bnvpl {
 
 struct LocalLightOptions {
   uint32_t shooters = 0, rays = 0;  // shooting receivers of a block, and rays from each
-  float radius = 0.0f;  // of a local light, in radii of the disk that a ray stands for; 0: a point
+  // Radius of a local light over that of the disk that its ray stands for; 0: a point.
+  float radius = 0.0f;
 };
 
 class LocalLights {
