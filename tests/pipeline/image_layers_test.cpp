@@ -2,6 +2,7 @@
 #include <bit>
 #include <cmath>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "core/vec3.h"
@@ -193,6 +194,24 @@ TEST_F(ImageLayers, ForDenoiserIsWithoutReuseAndAddsItsLayers) {
        kExitUsage, {"--for-denoiser", "--gather interleaved", "choose another gather"});
   succeed("vpl-render",
           scene_ + " --integrator path --spp 1 --quiet --for-denoiser on -o " + path("path.exr"));
+}
+
+TEST_F(ImageLayers, CountersOfACompensationAreLayersAndStatistics) {
+  makeStages(scene_);
+  const std::string render = scene_ + " " + path("lit.vpl") + " --spp 1 --size 8x6 --clamp 8 -o " +
+                             path("c.exr") + " --layers locallights --gather shirley --compensate ";
+  fail("vpl-render", render + "near-field", kExitUsage, {"locallights", "--compensate local"});
+  succeed("vpl-render", render + "local --stats " + path("c.json"));
+  const Image image = readExr(at("c.exr"));
+  double sum = 0.0;
+  for (const float v : *image.find("locallights")) sum += double{v};
+  EXPECT_GT(sum, 0.0);
+  const Json stats = Json::parse(readAll(at("c.json")));
+  const auto number = [&](const char* name) { return stats.at(name).get<double>(); };
+  EXPECT_NEAR(number("mean_locallights"), sum / 48.0, 1e-3);
+  EXPECT_GT(number("restored_over_removed"), 0.0);
+  EXPECT_NEAR(number("restored_over_removed"), number("mean_compensated") / number("mean_clamped"),
+              1e-6);
 }
 
 }  // namespace

@@ -94,6 +94,7 @@ struct CompensateMethod {
   // VPLs have commonRadius() instead of their own, so that what they leave out of the light between
   // two points depends on these alone.
   bool oneSize = false;
+  bool countsContinued = false;  // the counter is that of the rays from later vertices
   bool sharesPixels = false;  // neighbouring pixels share light, and so noise
 };
 // Defined in the build folder by cmake/Methods.cmake, from the folders beside this file.

@@ -231,6 +231,8 @@ class TileIntegrator::TileIndirectRays {
   void addTo(std::span<CameraSample> samples) const {
     for (size_t i = 0; i < found_.size(); ++i) {
       found_[i].addMeanTo(samples[i].radiance, reused_[i].radiance);
+      if (parts_.countsContinued)
+        samples[i].radiance.counts[parts_.gatherCounters] = found_[i].continued;
       found_[i].addMeanTo(samples[i].groups, reusedGroups(i), !parts_.directSamples);
     }
   }

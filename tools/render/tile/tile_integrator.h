@@ -29,7 +29,8 @@ struct TileParts {
   bool gathersPixelSums = false;  // finds the sum over a pixel's samples
   // Adds light that VPLs leave out to all samples at once. Returns the number of its rays.
   std::function<size_t(const TileReceivers&, std::span<Gathered>)> compensate = {};
-  size_t gatherCounters = 0;  // the counters of `compensate` follow those of `gather`
+  size_t gatherCounters = 0;     // the counters of compensation follow those of `gather`
+  bool countsContinued = false;  // its first counter is that of the rays from later vertices
   std::unique_ptr<const IndirectRays> rays;
   unsigned raysEach = 0;  // from each shading point
   unsigned reuse = 1;     // samples in a group that reuses its vertices; 1: no reuse

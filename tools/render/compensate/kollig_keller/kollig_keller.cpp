@@ -1,5 +1,7 @@
 // Bias compensation of Kollig & Keller (2006): what the bound on 1/d^2 takes from VPLs depends on
 // the distance alone, and rays that go on from vertex to vertex bring all of it back.
+#include <array>
+
 #include "tools/render/compensate/compensate.h"
 
 namespace bnvpl::methods::compensate::kollig_keller {
@@ -17,6 +19,9 @@ Compensation make(const CompensateInputs& in, const Values&) {
       }};
 }
 
+constexpr std::array kCounters{Counter{"continuedrays", "continued rays",
+                                       "rays of compensation from vertices behind the first hit"}};
+
 }  // namespace
 
 extern const CompensateMethod method;
@@ -25,6 +30,8 @@ const CompensateMethod method{
     .summary = "paths of rays add all that a bound of one size for all VPLs removes; no bias",
     .options = {},
     .make = make,
-    .oneSize = true};
+    .counters = kCounters,
+    .oneSize = true,
+    .countsContinued = true};
 
 }  // namespace bnvpl::methods::compensate::kollig_keller

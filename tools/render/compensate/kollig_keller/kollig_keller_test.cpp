@@ -39,6 +39,20 @@ TEST(KolligKeller, IsUnbiasedWhateverTheBound) {
   EXPECT_LT(none.mean, 0.9 * path);
 }
 
+// Paths go on where the bound removes light, from more vertices if it removes more.
+TEST(KolligKeller, CountsTheRaysThatGoOn) {
+  World world("cornell/scene.toml");
+  world.scene.film = {16, 16};
+  const VplTable lit = placeVpls(world, {{"method", "light"}, {"count", "200"}}).table;
+  const auto continued = [&](const char* clamp) {
+    const Given options{{"compensate", "kollig-keller"}, {"clamp", clamp}, {"only", "indirect"}};
+    return renderVpls(world, lit, with(kPlainRender, options)).stats.own[0];
+  };
+  EXPECT_EQ(continued("0"), 0.0);
+  EXPECT_GT(continued("1"), 0.0);
+  EXPECT_GT(continued("4"), 4.0 * continued("1"));
+}
+
 TEST(KolligKeller, AllVplsHaveOneSize) {
   World world("cornell/scene.toml");
   world.scene.film = {16, 16};

@@ -235,6 +235,7 @@ bool NearFieldRays::extend(Path& path, const Bsdf& bsdf) const {
       !scatter(rays_, bsdf, LobeGroup::Rough, Transport::Radiance, path.rng, sample, next)) {
     return false;
   }
+  ++path.out.continued;
   path.throughput *= sample.weight;
   const GroupSink groups = path.lightSink().times(path.throughput);
   const LearnedLight lights = path.learned(path.isFirst() ? kFirstLightRays : 1);

@@ -104,12 +104,14 @@ LightKind lightOf(const Values& options, const CompensateMethod* compensate) {
   return kind;
 }
 
-// Adds compensation for all samples of a tile at once, where the method has it.
+// Adds compensation for all samples of a tile at once, where the method has it, and the counters of
+// compensation.
 void addTileCompensation(const IntegratorInputs& in, const Values& options,
                          const Compensation& compensation, const GatherPoint& point,
                          TileParts& out) {
-  if (!compensation.tile) return;
   out.gatherCounters = gatherOf(options)->counters.size();
+  out.countsContinued = compensationOf(options)->countsContinued;
+  if (!compensation.tile) return;
   out.compensate = [fn = compensation.tile,
                     lights = VertexLights{in.lights, out.spatialLights, point}](
                        const TileReceivers& receivers, std::span<Gathered> found) {

@@ -22,7 +22,7 @@ struct RayContributions {
   std::vector<ReusedVertex> vertices;
   Vec3 vertexLight;
   double squares = 0.0;  // sum of squared indirect light of rays without `vertexLight`
-  uint32_t rays = 0, shadowRays = 0;
+  uint32_t rays = 0, shadowRays = 0, continued = 0;  // continued: rays from later vertices
   // Light by group: the sample's own of `direct`, `indirect` and `vertexLight`, in this order, and
   // the radiance of each of `vertices`.
   uint32_t groups = 0;  // 0: not told apart
