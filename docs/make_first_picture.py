@@ -62,8 +62,9 @@ def main() -> None:
         folder = Path(name)
         tools = Tools(options.bin.resolve(), folder)
         scene = str(SCENE)
-        png = ("--size", size, "--exposure", EXPOSURE, "--png")
-        cpu_s = tools.run("vpl-place", scene, "-o", "c.vpl", "-n", "120k")
+        view = ("--camera", "Room")
+        png = (*view, "--size", size, "--exposure", EXPOSURE, "--png")
+        cpu_s = tools.run("vpl-place", scene, *view, "-o", "c.vpl", "-n", "120k")
         cpu_s += tools.run("vpl-eliminate", "c.vpl", "-o", "v.vpl", "-n", "3k")
         lit = ("v.vpl", "-o", "l.vpl", "--photons", "10M")
         cpu_s += tools.run("vpl-estimate", scene, *lit)
@@ -73,7 +74,7 @@ def main() -> None:
         pilot_s = tools.run("vpl-render", scene, *path, "--spp", "4")
         spp = max(1, round(4 * cpu_s / pilot_s))
         path_s = tools.run("vpl-render", scene, *path, "--spp", str(spp))
-        dots = ("v.vpl", "--scene", scene, "-o", "dots.png", "--size", size, "--dot", "7")
+        dots = ("v.vpl", "--scene", scene, *view, "-o", "dots.png", "--size", size, "--dot", "7")
         tools.run("vpl-inspect", "plot", *dots)
         parts = [pixels_of(folder / f"{part}.png") for part in ("path", "ours", "dots")]
     picture = np.concatenate(

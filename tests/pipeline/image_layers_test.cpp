@@ -214,5 +214,20 @@ TEST_F(ImageLayers, CountersOfACompensationAreLayersAndStatistics) {
               1e-6);
 }
 
+TEST_F(ImageLayers, MatrixGathersTellTheEntriesTheyEvaluate) {
+  makeStages(scene_);
+  for (const char* gather :
+       {"mrcs --rows 9", "lightslice --slices 9", "matrix-completion --slices 9"}) {
+    succeed("vpl-render", scene_ + " " + path("lit.vpl") + " --spp 1 --size 8x6 -o " +
+                              path("m.exr") + " --gather " + gather + " --stats " + path("m.json"));
+    const Json stats = Json::parse(readAll(at("m.json")));
+    const auto number = [&](const char* name) { return stats.at(name).get<double>(); };
+    EXPECT_GE(number("matrix_rows"), 6.0) << gather;
+    EXPECT_LE(number("matrix_rows"), 24.0) << gather;
+    EXPECT_EQ(number("matrix_entries"), number("matrix_rows") * number("emission_points"))
+        << gather;
+  }
+}
+
 }  // namespace
 }  // namespace bnvpl

@@ -230,6 +230,10 @@ void reportGathered(const RenderResult& result, const Values& options, Summary& 
     std::snprintf(line, sizeof line, "film filter: means over %.2f pixels", stats.filterPixels);
     summary.add("mean_filter_pixels", stats.filterPixels, line);
   }
+  for (const PlanCount& c : result.planned) {
+    std::snprintf(line, sizeof line, "%.0f %s", c.value, std::string(c.unit).c_str());
+    summary.add(std::string(c.name), c.value, line);
+  }
   const std::vector<Counter> counters = countersOf(options);
   for (size_t k = 0; k < counters.size(); ++k) {
     std::snprintf(line, sizeof line, "%.1f %s a sample", stats.own[k],

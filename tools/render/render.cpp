@@ -313,6 +313,7 @@ RenderResult render(const RayScene& rays, const LightSet& lights, const VplTable
   result.groups = film.groups;
   result.vpls = integrator.vpls;
   result.emissionPoints = integrator.emissionPoints;
+  result.planned = integrator.planned;
   result.caustics = integrator.caustics;
   // The reflected half is reflected again: 0.5 / (1 - 0.5) = 1.
   if (const double area = surfaceArea(rays.scene()); area > 0.0)

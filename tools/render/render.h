@@ -44,6 +44,7 @@ struct RenderResult {
   Image image;
   FilmStats stats;
   size_t vpls = 0, emissionPoints = 0;  // see Integrator
+  std::vector<PlanCount> planned = {};
   CausticStats caustics = {};
   std::vector<std::string> groups = {};  // light groups that the image shows
   std::optional<PassesDone> passes;  // set if there is a budget

@@ -30,6 +30,11 @@ struct Counter {
   std::string_view unit;  // "grid lights": what is counted, in the plural
   std::string_view help;
 };
+// What a method of --gather counts once for the whole film, a number in --stats.
+struct PlanCount {
+  std::string_view name, unit;
+  double value = 0.0;
+};
 inline constexpr size_t kMaxCounters = 4;  // all methods of an image together
 // Counts of a receiver, in the order in which its methods declare their counters.
 using Counts = std::array<uint32_t, kMaxCounters>;

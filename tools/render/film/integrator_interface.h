@@ -24,6 +24,7 @@ struct Integrator {
   bool wholePixels = false;   // every call needs all samples of its pixels
   size_t vpls = 0;            // number of VPLs with flux
   size_t emissionPoints = 0;  // places from which these VPLs shine
+  std::vector<PlanCount> planned = {};  // counts of the gather's preparations
   CausticStats caustics = {};
 };
 

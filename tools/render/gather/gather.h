@@ -58,6 +58,7 @@ struct Gather {
   GatherTile tile;
   GatherPoint point = {};    // empty: PointGather (gather/point_gather.h)
   bool wholePixels = false;  // every call needs all samples of its pixels
+  std::vector<PlanCount> planned = {};  // what the method counted while it prepared the film
 };
 
 // The shading point of each pixel, row by row; its triangle is kNone where there is none.

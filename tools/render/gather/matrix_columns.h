@@ -45,6 +45,13 @@ class Columns {
   std::vector<double> norms_;
 };
 
+// What is evaluated of a matrix, for --stats.
+inline std::vector<PlanCount> entriesOf(size_t rows, size_t columns) {
+  const double entries = double(rows) * double(columns);
+  return {{"matrix_rows", "rows of the matrix evaluated", double(rows)},
+          {"matrix_entries", "entries of these rows", entries}};
+}
+
 // Evaluates the rows of these receivers, one shadow ray for each VPL that can light it. Progress
 // counts rows.
 Columns columnsAt(const GatherInputs& in, std::span<const SurfacePoint> receivers,

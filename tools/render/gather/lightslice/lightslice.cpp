@@ -13,13 +13,15 @@ constexpr auto kOptions = optionTable(kSlicesOption, kColumnsOption, kNeighbourS
 
 Gather make(const GatherInputs& in, const Values& options) {
   const auto plan = std::make_shared<const SlicePlan>(makeSlicePlan(in, options));
-  return {[in, plan](const TileReceivers& tile, std::span<Gathered> out) {
-    for (size_t i = 0; i < out.size(); ++i) {
-      out[i] = {};
-      if (!tile.bsdf[i] || plan->draws.empty()) continue;
-      out[i] = plan->draws[plan->sliceOf(tile.bsdf[i]->point())].gather(in, tile, i);
-    }
-  }};
+  return {.tile =
+              [in, plan](const TileReceivers& tile, std::span<Gathered> out) {
+                for (size_t i = 0; i < out.size(); ++i) {
+                  out[i] = {};
+                  if (!tile.bsdf[i] || plan->draws.empty()) continue;
+                  out[i] = plan->draws[plan->sliceOf(tile.bsdf[i]->point())].gather(in, tile, i);
+                }
+              },
+          .planned = entriesOf(plan->slices.size(), in.vpls.size())};
 }
 
 }  // namespace

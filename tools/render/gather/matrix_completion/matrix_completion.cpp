@@ -155,7 +155,8 @@ Gather make(const GatherInputs& in, const Values& options) {
                   for (size_t k = 0; k < draws.size(); ++k) matrix.addColumn(draws[k], Rng(key, k));
                 }
               },
-          .wholePixels = true};
+          .wholePixels = true,
+          .planned = entriesOf(plan->slices.size(), in.vpls.size())};
 }
 
 }  // namespace

@@ -97,11 +97,17 @@ std::vector<Cluster> clustersOf(const Columns& columns, size_t count, Rng& rng) 
                          [&](Cluster& c) { return splitOff(c, columns, rng); });
 }
 
-ClusterDraws drawsOf(const GatherInputs& in, const Values& options) {
+struct Plan {
+  size_t rows = 0;
   ClusterDraws draws;
-  if (in.vpls.size() == 0) return draws;
+};
+
+Plan planOf(const GatherInputs& in, const Values& options) {
+  Plan plan;
+  if (in.vpls.size() == 0) return plan;
   Rng rng(streamKey(in.seed, Stream::LightTree) + 2, 0);
   const std::vector<SurfacePoint> rows = rowPoints(in.primaryPoints(), options[kRowsOption], rng);
+  plan.rows = rows.size();
   const Columns columns = columnsAt(in, rows, "rows");
   std::vector<double> shares(columns.size());
   for (size_t i = 0; i < shares.size(); ++i) {
@@ -109,16 +115,18 @@ ClusterDraws drawsOf(const GatherInputs& in, const Values& options) {
     shares[i] = columns.norm(i) > 0.0 ? columns.norm(i) : flux;
   }
   for (const Cluster& c : clustersOf(columns, options[kColumnsOption], rng))
-    draws.add(c, shares, rng);
-  return draws;
+    plan.draws.add(c, shares, rng);
+  return plan;
 }
 
 Gather make(const GatherInputs& in, const Values& options) {
-  const auto draws = std::make_shared<const ClusterDraws>(drawsOf(in, options));
-  return {[in, draws](const TileReceivers& tile, std::span<Gathered> out) {
-    for (size_t i = 0; i < out.size(); ++i)
-      out[i] = tile.bsdf[i] ? draws->gather(in, tile, i) : Gathered{};
-  }};
+  const auto plan = std::make_shared<const Plan>(planOf(in, options));
+  return {.tile =
+              [in, plan](const TileReceivers& tile, std::span<Gathered> out) {
+                for (size_t i = 0; i < out.size(); ++i)
+                  out[i] = tile.bsdf[i] ? plan->draws.gather(in, tile, i) : Gathered{};
+              },
+          .planned = entriesOf(plan->rows, in.vpls.size())};
 }
 
 }  // namespace

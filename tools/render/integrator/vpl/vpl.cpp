@@ -181,6 +181,7 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
           .wholePixels = gather.wholePixels || gathersPixelSums(options),
           .vpls = parts->vpls.vplCount,
           .emissionPoints = parts->vpls.size(),
+          .planned = std::move(gather.planned),
           .caustics = caustics};
 }
 
