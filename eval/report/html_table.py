@@ -6,6 +6,7 @@ import math
 from html import escape
 from typing import Any
 
+from diagrams import DIAGRAMS, diagram_svg
 from report_json import ReportError
 
 # Viewer and place in its list of images, by the ids of scene, view and image.
@@ -172,9 +173,18 @@ def row_html(
         if k == 0:
             shown = picture_button(row["picture"], shown, places)
             cells.append(f'<th scope="row"{kind}{value}>{shown}</th>')
+        elif row["diagram"] and k == len(columns) - 1:
+            drawn = diagram_html(row["diagram"])
+            cells.append(f'<td{kind}{value}><div class="drawn">{drawn}<p>{shown}</p></div></td>')
         else:
             cells.append(f"<td{kind}{value}>{shown}</td>")
     return "<tr>" + "".join(cells) + "</tr>"
+
+
+def diagram_html(name: str) -> str:
+    if name not in DIAGRAMS:
+        raise ReportError(f"no diagram has the name '{name}'; add it to eval/report/diagrams")
+    return diagram_svg(name)
 
 
 def picture_button(picture: dict[str, str] | None, shown: str, places: Places) -> str:

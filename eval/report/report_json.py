@@ -152,6 +152,7 @@ def table(node: Node) -> dict[str, Any]:
                 "cells": cells,
                 "judged": not r.get("unjudged", bool, "true or false", False),
                 "picture": picture_of(r),
+                "diagram": r.get("diagram", str, "the name of a diagram"),
             }
         )
     keys = [c["key"] for c in columns]

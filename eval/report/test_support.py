@@ -21,6 +21,8 @@ from selenium import webdriver
 from selenium.webdriver.chrome.options import Options
 from selenium.webdriver.chrome.service import Service
 
+from diagrams import DIAGRAMS
+
 HERE = Path(__file__).resolve().parent
 WIDTH, HEIGHT = 8, 6
 
@@ -176,6 +178,15 @@ def tables() -> list[dict[str, Any]]:
                     ("South", "second", "a", 0.004),
                     ("South", "second", "wild", None),
                 )
+            ],
+        },
+        {
+            "id": "diagrams",
+            "title": "Diagrams",
+            "columns": [{"key": "gather", "label": "Gather"}, {"key": "text", "label": "Text"}],
+            "rows": [
+                {"gather": name, "text": "What it does, in many words. " * 9, "diagram": name}
+                for name in DIAGRAMS
             ],
         },
     ]

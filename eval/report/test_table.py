@@ -1,10 +1,11 @@
-"""Tests tables with filters: what a person chooses, sorts and opens."""
+"""Tests tables: what a person chooses, sorts and opens, and the diagrams of rows."""
 
 from __future__ import annotations
 
 import functools
 from typing import Any
 
+from diagrams import DIAGRAMS
 from page_case import PageCase
 
 
@@ -77,6 +78,30 @@ class TableTest(PageCase):
             self.js("arguments[0].click()", button)
             self.assertEqual(self.all("#table-field tr.shown"), [])
             self.assertEqual(len(self.all("#view-room-main .viewer")), 1)
+
+    def test_a_diagram_stands_beside_its_text_and_on_a_phone_above_it(self) -> None:
+        for width in (1280, 400):
+            self.open(width, "light")
+            boxes = self.js("""
+                return [...document.querySelectorAll('.drawn')].map((cell) =>
+                    [...cell.children].map((e) => e.getBoundingClientRect().toJSON()))""")
+            self.assertEqual(len(boxes), len(DIAGRAMS))
+            for drawing, text in boxes:
+                edge, start = ("right", "left") if width == 1280 else ("bottom", "top")
+                self.assertLess(drawing[edge], text[start])
+                self.assertGreater(drawing["width"], 240)
+                self.assertGreater(text["width"], 250)
+                self.assertLessEqual(max(drawing["right"], text["right"]), width)
+
+    def test_words_of_a_diagram_lie_within_it(self) -> None:
+        outside = self.js("""
+            return [...document.querySelectorAll('svg.diagram text')].filter((text) => {
+              const frame = text.closest('svg').getBoundingClientRect();
+              const box = text.getBoundingClientRect();
+              return box.left < frame.left - 1 || box.right > frame.right + 1
+                  || box.top < frame.top - 2 || box.bottom > frame.bottom + 2;
+            }).map((text) => text.textContent)""")
+        self.assertEqual(outside, [])
 
     def test_another_row_takes_the_viewer(self) -> None:
         first, second = self.all("#table-field button.picture")[:2]

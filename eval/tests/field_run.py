@@ -63,6 +63,9 @@ class FieldRun(unittest.TestCase):
         texts = {r["gather"]: r["text"] for r in report["tables"][1]["rows"]}
         self.assertEqual(list(texts), self.gathers)
         self.assertTrue(all(len(text) > 40 for text in texts.values()))
+        self.assertEqual([r["diagram"] for r in report["tables"][1]["rows"]], self.gathers)
+        page = (FOLDER / "report.html").read_text()
+        self.assertEqual(page.count('<svg class="diagram"'), len(self.gathers))
 
 
 if __name__ == "__main__":

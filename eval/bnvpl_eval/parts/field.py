@@ -1,8 +1,8 @@
 """Compares every gather beside compensations, on the same virtual lights, scenes and rays.
 
 Equal VPLs: without compensation, for each count, the same lit VPLs and samples a pixel. Equal time:
-with the compensations of its size, at one count, as many samples a pixel as fit into a time that is the same
-for all. Combinations that vpl-render refuses are listed with its reason.
+with the compensations of its size, at one count, as many samples a pixel as fit into a time that is
+the same for all. Combinations that vpl-render refuses are listed with its reason.
 """
 
 import math
@@ -23,6 +23,10 @@ DEFAULT_GATHER = "tilecuts"  # the default of vpl-render, which a viewer shows f
 EQUAL_VPLS, EQUAL_TIME = "equal VPLs", "equal time"
 MAX_SPP = 1024  # at equal time
 REFUSED = 2  # exit code of vpl-render
+SHAPES = (
+    "Discs are VPLs, black or white squares receivers. A line is a shadow ray, a cross where it is "
+    "blocked; a dashed line is light without a ray of its own. Colours tell clusters apart."
+)
 
 COLUMNS = [
     column("gather", "gather"),
@@ -193,7 +197,18 @@ def paragraph(gather: str) -> str:
     folder = ROOT / "tools/render/gather" / gather.replace("-", "_")
     blocks = (folder / "theory.md").read_text().split("\n\n")
     text = next(block for block in blocks if block and not block.startswith("#"))
-    return re.sub(r"\[([^\]]+)\]\([^)]+\)", r"\1", " ".join(text.split())).replace("`", "")
+    text = re.sub(r"\[([^\]]+)\]\([^)]+\)", r"\1", " ".join(text.split()))
+    return text.replace("`", "").replace("*", "")
+
+
+def explanation(gathers: list[str]) -> dict[str, Any]:
+    """A table with a paragraph and a diagram for each gather."""
+    texts = [{"group": "", "gather": g, "text": paragraph(g)} for g in gathers]
+    columns = [column("gather", "gather"), column("text", "what it does")]
+    made = table("gathers", "What the gathers do", SHAPES, columns, texts)
+    for row in made["rows"]:
+        row["diagram"] = row["gather"]
+    return made
 
 
 def note(size: dict[str, Any], run: Field) -> str:
@@ -241,6 +256,4 @@ def run(context: Context) -> None:
     for shown_row, row in zip(made["rows"], rows, strict=True):
         shown_row["picture"] = row.get("picture")
     context.tables.append(made)
-    texts = [{"group": "", "gather": g, "text": paragraph(g)} for g in gathers]
-    columns = [column("gather", "gather"), column("text", "what it does")]
-    context.tables.append(table("gathers", "What the gathers do", "", columns, texts))
+    context.tables.append(explanation(gathers))
