@@ -61,11 +61,12 @@ def table(results: list[Row]) -> str:
     for gather in sorted({r["gather"] for r in rows}):
         cells = []
         for scene in scenes:
-            r = shown.get((gather, scene))
-            text = "-" if r is None else f"**{value(r)}**" if id(r) in best else value(r)
-            if r is not None and r["compensate"] != COMPENSATION:
-                text += " *"
-            cells.append(text)
+            here = shown.get((gather, scene))
+            if here is None:
+                cells.append("-")
+                continue
+            text = f"**{value(here)}**" if id(here) in best else value(here)
+            cells.append(text if here["compensate"] == COMPENSATION else f"{text} *")
         equal = [r for r in rows if r["gather"] == gather and r["at"] == "equal VPLs"]
         rays = [r["shadow_rays"] for r in equal if int(r["vpls"]) == most]
         cells += [growth(equal), f"{sum(rays) / len(rays):.0f}" if rays else "-"]
