@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Renders the first picture of the README: a room by the path tracer, by VPLs, and the VPLs.
 
-    docs/make_first_picture.py [--bin build/release/bin]    # about 20 CPU minutes
+    docs/make_first_picture.py [--bin build/release/bin]    # 22 CPU minutes
 
 All parts are of one view with 1600 x 900 pixels. The path tracer gets the CPU time of all four
 stages, and the picture says how long that was.
