@@ -3,7 +3,8 @@
 
     eval/field_page.py build/eval/field
 
-A row for each gather: relMSE of the indirect light of each scene at equal time, and what it spends.
+A row for each gather: relMSE of the indirect light of each scene at equal time, without
+compensation and with the default one, and what it spends.
 The least error of a scene is bold, and with it those that lie within the standard errors of both.
 """
 
@@ -16,7 +17,7 @@ from bnvpl_eval import settings
 from rooms_page import put
 
 PAGE = settings.ROOT / "docs/field.md"
-COMPENSATION = "near-field"  # the default of vpl-render
+COMPENSATIONS = ("none", "near-field")  # the second is the default of vpl-render
 Row = dict[str, Any]
 
 
@@ -26,6 +27,8 @@ def value(row: Row) -> str:
 
 def within_the_best(rows: list[Row]) -> list[Row]:
     """The row of least relMSE, and those that are not above it by more than both errors."""
+    if not rows:
+        return []
     best = min(rows, key=lambda r: float(r["relmse"]))
     limit = best["relmse"] + best.get("relmse_error", 0.0)
     return [r for r in rows if r["relmse"] - r.get("relmse_error", 0.0) <= limit]
@@ -38,40 +41,40 @@ def growth(rows: list[Row]) -> str:
         for scene in {r["scene"] for r in rows}
     }
     times = [of[-1]["render_cpu_s"] / of[0]["render_cpu_s"] for of in by.values() if len(of) > 1]
-    return f"{sum(times) / len(times):.1f}" if times else ""
+    return f"{sum(times) / len(times):.1f}" if times else "-"
 
 
 def table(results: list[Row]) -> str:
     rows = [r for r in results if r["part"] == "field"]
-    scenes = list(dict.fromkeys(r["scene"] for r in rows))
     at_time = [r for r in rows if r["at"] == "equal time"]
     most = max(int(r["vpls"]) for r in at_time)
-    shown: dict[tuple[str, str], Row] = {}
-    for wanted in ("none", COMPENSATION):  # the second replaces the first
-        for r in at_time:
-            if r["compensate"] == wanted:
-                shown[r["gather"], r["scene"]] = r
+    scenes = list(dict.fromkeys(r["scene"] for r in rows))
+    columns = [(scene, compensate) for compensate in COMPENSATIONS for scene in scenes]
+    shown = {(r["gather"], r["scene"], r["compensate"]): r for r in at_time}
     best = [
         id(r)
-        for scene in scenes
-        for r in within_the_best([r for (_, of), r in shown.items() if of == scene])
+        for column in columns
+        for r in within_the_best([r for (_, *of), r in shown.items() if tuple(of) == column])
     ]
-    heads = ["gather", *scenes, "CPU time, most VPLs / fewest", "shadow rays a sample"]
+    heads = ["gather", *(f"{scene}, {compensate}" for scene, compensate in columns)]
+    heads += ["CPU time, most VPLs / fewest", "shadow rays a sample"]
     lines = ["| " + " | ".join(heads) + " |", "|---" * len(heads) + "|"]
+    too_slow: list[str] = []
     for gather in sorted({r["gather"] for r in rows}):
         cells = []
-        for scene in scenes:
-            here = shown.get((gather, scene))
-            if here is None:
-                cells.append("-")
-                continue
-            text = f"**{value(here)}**" if id(here) in best else value(here)
-            cells.append(text if here["compensate"] == COMPENSATION else f"{text} *")
+        for column in columns:
+            here = shown.get((gather, *column))
+            text = "-" if here is None else value(here)
+            cells.append(f"**{text}**" if id(here) in best else text)
         equal = [r for r in rows if r["gather"] == gather and r["at"] == "equal VPLs"]
         rays = [r["shadow_rays"] for r in equal if int(r["vpls"]) == most]
         cells += [growth(equal), f"{sum(rays) / len(rays):.0f}" if rays else "-"]
-        lines.append("| " + " | ".join([gather, *cells]) + " |")
-    return "\n".join(lines)
+        if all(cell == "-" for cell in cells):
+            too_slow.append(gather)
+        else:
+            lines.append("| " + " | ".join([gather, *cells]) + " |")
+    left_out = f"\n\nToo slow for this time: {', '.join(too_slow)}." if too_slow else ""
+    return "\n".join(lines) + left_out
 
 
 def main() -> None:

@@ -32,20 +32,21 @@ class FieldPage(unittest.TestCase):
 
     def test_the_least_error_and_those_within_its_noise_are_bold(self) -> None:
         made = self.table(
-            row("a", "equal time", 1000, 0.30, compensate="near-field"),
-            row("b", "equal time", 1000, 0.315, compensate="near-field"),
-            row("c", "equal time", 1000, 0.33, compensate="near-field"),
+            row("a", "equal time", 1000, 0.30),
+            row("b", "equal time", 1000, 0.315),
+            row("c", "equal time", 1000, 0.33),
         )
         self.assertEqual([cells[1] for cells in made[2:]], ["**0.3**", "**0.315**", "0.33"])
 
-    def test_the_default_compensation_is_shown_where_there_is_one(self) -> None:
+    def test_each_compensation_has_its_own_column(self) -> None:
         made = self.table(
             row("a", "equal time", 1000, 0.3, compensate="near-field"),
             row("a", "equal time", 1000, 0.1),
             row("a", "equal time", 1000, 0.2, compensate="kollig-keller"),
             row("b", "equal time", 1000, 0.4),
         )
-        self.assertEqual([cells[1] for cells in made[2:]], ["**0.3**", "0.4 *"])
+        self.assertEqual(made[0][1:3], ["a room, none", "a room, near-field"])
+        self.assertEqual([cells[1:3] for cells in made[2:]], [["**0.1**", "**0.3**"], ["0.4", "-"]])
 
     def test_what_a_gather_spends_is_that_at_equal_vpls(self) -> None:
         made = self.table(
@@ -53,7 +54,7 @@ class FieldPage(unittest.TestCase):
             row("a", "equal VPLs", 10_000, 0.3),
             row("a", "equal time", 10_000, 0.2),
         )
-        self.assertEqual(made[2], ["a", "**0.2** *", "10.0", "1000"])
+        self.assertEqual(made[2], ["a", "**0.2**", "-", "10.0", "1000"])
 
 
 if __name__ == "__main__":
