@@ -95,4 +95,19 @@ inline Scene sceneOf(const Material& m) {
   return scene;
 }
 
+// A floor seen from above, a wall and a lamp. More may be added before finishScene().
+inline Scene floorAndWallBelowLamp(Film film) {
+  Scene scene;
+  addSquare(scene, {-2, 0, 2}, {4, 0, 0}, {0, 0, -4}, lambert(Vec3(0.5f)));
+  addSquare(scene, {-2, 0, -2}, {4, 0, 0}, {0, 3, 0}, lambert(Vec3(0.8f)));
+  addSquare(scene, {-0.5f, 2.9f, 0.5f}, {0, 0, -1}, {1, 0, 0}, lamp(Vec3(10)));
+  scene.film = film;
+  scene.camera.position = {0, 2, 0.3f};
+  scene.camera.forward = {0, -1, 0};
+  scene.camera.right = {1, 0, 0};
+  scene.camera.up = {0, 0, -1};
+  scene.camera.verticalFovRad = 0.6f;
+  return scene;
+}
+
 }  // namespace bnvpl

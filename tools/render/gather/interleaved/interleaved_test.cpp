@@ -41,17 +41,8 @@ TEST(Interleaved, SamplesOfAPixelTakeTurns) {
 // A floor below a wall that lights it, seen from above: the whole film shows one plane. Its mean
 // stays that of all VPLs whichever pixels hold which subsets, also where the film ends.
 Scene litPlane() {
-  Scene scene;
-  addSquare(scene, {-2, 0, 2}, {4, 0, 0}, {0, 0, -4}, lambert(Vec3(0.5f)));
-  addSquare(scene, {-2, 0, -2}, {4, 0, 0}, {0, 3, 0}, lambert(Vec3(0.8f)));
-  addSquare(scene, {-0.5f, 2.9f, 0.5f}, {0, 0, -1}, {1, 0, 0}, lamp(Vec3(10)));
+  Scene scene = floorAndWallBelowLamp({31, 22});
   finishScene(scene);
-  scene.film = {31, 22};
-  scene.camera.position = {0, 2, 0.3f};
-  scene.camera.forward = {0, -1, 0};
-  scene.camera.right = {1, 0, 0};
-  scene.camera.up = {0, 0, -1};
-  scene.camera.verticalFovRad = 0.6f;
   return scene;
 }
 

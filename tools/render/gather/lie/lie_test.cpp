@@ -72,19 +72,10 @@ TEST(Lie, PointsBeyondTheMemoryAreRefused) {
 
 // A floor below a lit wall. Thin bars shade a few points of each cell.
 Scene floorBelowBars() {
-  Scene scene;
-  addSquare(scene, {-2, 0, 2}, {4, 0, 0}, {0, 0, -4}, lambert(Vec3(0.5f)));
-  addSquare(scene, {-2, 0, -2}, {4, 0, 0}, {0, 3, 0}, lambert(Vec3(0.8f)));
-  addSquare(scene, {-0.5f, 2.9f, 0.5f}, {0, 0, -1}, {1, 0, 0}, lamp(Vec3(10)));
+  Scene scene = floorAndWallBelowLamp({64, 48});
   for (int k = -4; k <= 4; ++k)
     addSquare(scene, {-2, 0.04f, 0.25f * float(k)}, {4, 0, 0}, {0, 0, -0.012f}, lambert(Vec3()));
   finishScene(scene);
-  scene.film = {64, 48};
-  scene.camera.position = {0, 2, 0.3f};
-  scene.camera.forward = {0, -1, 0};
-  scene.camera.right = {1, 0, 0};
-  scene.camera.up = {0, 0, -1};
-  scene.camera.verticalFovRad = 0.6f;
   return scene;
 }
 
