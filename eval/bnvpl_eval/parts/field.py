@@ -119,23 +119,41 @@ class Field:
 
     def at_equal_time(self, view: View, gather: str, compensate: str) -> dict[str, Any] | None:
         c = self.configuration(view, gather, compensate, self.size["equal_time_vpls"])
-        made = self.unless_refused(
-            gather, compensate, lambda: pipeline.image(self.context.runner, view, c, 1)
+
+        def cpu_s(spp: int) -> float:
+            _, runs = pipeline.image(self.context.runner, view, c.but(spp=spp), 1)
+            return float(runs[-1].cpu_s)
+
+        spp = self.unless_refused(
+            gather, compensate, lambda: fitting_spp(cpu_s, c.spp, self.size["time_s"])
         )
-        if made is None:
+        if spp is None:
             return None
-        spp = round(c.spp * self.size["time_s"] / max(made[1][-1].cpu_s, 1e-3))
         if spp < 1:
             self.skipped.append(f"{gather}, {compensate}, equal time, {view.scene.title}")
             return None
         row: dict[str, Any] | None = self.judge(
-            view, gather, compensate, c.vpls, min(spp, MAX_SPP), EQUAL_TIME
+            view, gather, compensate, c.vpls, spp, EQUAL_TIME
         )
         return row
 
 
 def paired(size: dict[str, Any], gather: str, compensate: str) -> bool:
     return compensate in size["compensations"] or gather in size["gathers_with_any"]
+
+
+def fitting_spp(cpu_s: Callable[[int], float], few: int, time_s: float) -> int:
+    """Samples a pixel whose run takes `time_s` CPU seconds, for a time that grows linearly.
+
+    Preparations take most of the time of a few samples, so a second trial has as many as would fit
+    without them.
+    """
+    few_s = max(cpu_s(few), 1e-3)
+    if few_s > time_s:
+        return round(few * time_s / few_s)
+    many = min(max(math.floor(few * time_s / few_s), 2 * few), MAX_SPP)
+    sample_s = max((cpu_s(many) - few_s) / (many - few), time_s / MAX_SPP)
+    return min(MAX_SPP, round(few + (time_s - few_s) / sample_s))
 
 
 def expected_s(rows: list[dict[str, Any]], count: int) -> float:

@@ -1,0 +1,31 @@
+"""Tests how the part that compares gathers chooses its numbers of samples."""
+
+import sys
+import unittest
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from bnvpl_eval.parts import field  # noqa: E402 (after the path that it needs)
+
+
+class FittingSamples(unittest.TestCase):
+    def fitting(self, preparation_s: float, sample_s: float, time_s: float) -> int:
+        return field.fitting_spp(lambda spp: preparation_s + sample_s * spp, 2, time_s)
+
+    def test_preparations_are_not_taken_for_samples(self) -> None:
+        self.assertEqual(self.fitting(1.5, 0.1, 4.0), 25)
+        self.assertEqual(self.fitting(0.0, 0.5, 4.0), 8)
+
+    def test_preparations_may_take_nearly_all_of_the_time(self) -> None:
+        self.assertEqual(self.fitting(3.7, 0.1, 4.0), 3)
+
+    def test_fewer_samples_than_the_first_trial(self) -> None:
+        self.assertEqual(self.fitting(0.0, 4.0, 4.0), 1)
+        self.assertEqual(self.fitting(0.0, 20.0, 4.0), 0)
+
+    def test_no_more_than_the_limit(self) -> None:
+        self.assertEqual(self.fitting(0.0, 1e-6, 4.0), field.MAX_SPP)
+
+
+if __name__ == "__main__":
+    unittest.main()
