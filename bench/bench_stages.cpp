@@ -65,10 +65,10 @@ std::vector<Ray> photonRays() {
     float probability = 0.0f;
     const PhotonStart start = lights.emit(lights.pick(rng.next(), probability), rng);
     Vec3 from = start.origin;
-    followPhoton(world().rays, PhotonWalk(start, 32, rng), [&](const Bsdf& bsdf, Vec3, bool) {
+    followPhoton(world().accel, PhotonWalk(start, 32, rng), [&](const Bsdf& bsdf, Vec3, bool) {
       const Vec3 to = bsdf.point().position - from;
       if (lengthSquared(to) > 0.0f) rays.push_back({from, normalize(to)});
-      from = world().rays.offsetOrigin(bsdf.point().position, bsdf.point().ng);
+      from = world().accel.offsetOrigin(bsdf.point().position, bsdf.point().ng);
     });
   }
   return rays;
@@ -85,9 +85,9 @@ std::vector<Ray> cameraRays() {
         {scene.camera.position, cameraDirection(scene.camera, scene.film, film.x, film.y)});
     SurfacePoint hit;
     BsdfSample next;
-    if (world().rays.closestHit(rays.back().origin, rays.back().direction, hit) &&
+    if (world().accel.closestHit(rays.back().origin, rays.back().direction, hit) &&
         Bsdf(scene, hit).sample(LobeGroup::Rough, Transport::Radiance, rng, next)) {
-      rays.push_back({world().rays.offsetOrigin(hit.position, next.side), next.wi});
+      rays.push_back({world().accel.offsetOrigin(hit.position, next.side), next.wi});
     }
   }
   return rays;
@@ -103,7 +103,7 @@ void bareRays(benchmark::State& state) {
       SurfacePoint hit;
       for (size_t i = begin; i < end; ++i) {
         benchmark::DoNotOptimize(
-            world().rays.closestHit(segments[i].origin, segments[i].direction, hit));
+            world().accel.closestHit(segments[i].origin, segments[i].direction, hit));
       }
     });
     rays += double(segments.size());

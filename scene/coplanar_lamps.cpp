@@ -168,7 +168,7 @@ std::vector<std::string> liftCoplanarLamps(Scene& scene) {
                       scene.materials[lamps.in[i]].name +
                       "'; the side of its winding is taken to be in front");
     }
-    // The offset of RayScene::offsetOrigin().
+    // The offset of Accelerator::offsetOrigin().
     const float by = lamp.reach() * 0x1p-18f + scene.offsetSize() * 0x1p-20f;
     Triangle& t = scene.triangles[lamps.triangles[i]];
     for (size_t c = 0; c < 3; ++c) {

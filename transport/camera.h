@@ -6,7 +6,7 @@
 
 #include "core/sampling.h"
 #include "scene/scene.h"
-#include "transport/rays.h"
+#include "transport/accelerator.h"
 
 namespace bnvpl {
 

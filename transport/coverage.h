@@ -11,7 +11,7 @@
 #include "core/sampling.h"
 #include "spatial/compatible_surface.h"
 #include "spatial/reach_grid.h"
-#include "transport/rays.h"
+#include "transport/accelerator.h"
 
 namespace bnvpl {
 
@@ -29,11 +29,11 @@ class Coverage {
   // `reach` is the max distance at which each VPL covers points, world units. Borrows the columns
   // and the scene.
   Coverage(std::span<const Vec3> position, std::span<const Vec3> normal, std::vector<float> reach,
-           const RayScene& rays)
+           const Accelerator& accel)
       : position_(position),
         normal_(normal),
         reach_(std::move(reach)),
-        rays_(rays),
+        accel_(accel),
         grid_(position, normal, reach_) {}
 
   // Picks one of the VPLs that cover the point, all with equal probability: VPLs within reach on a
@@ -89,14 +89,14 @@ class Coverage {
     const Vec3 at = position_[i] + Basis(normal).toWorld(sampleDisk(square.x, square.y) * reach);
     Vec3 from = at + normal * height;
     SurfacePoint hit;
-    for (int layer = 0; layer < kMaxLayers && rays_.closestHit(from, -normal, hit); ++layer) {
+    for (int layer = 0; layer < kMaxLayers && accel_.closestHit(from, -normal, hit); ++layer) {
       const Vec3 offset = hit.position - position_[i];
       if (dot(offset, normal) < -height) return;
       if (lengthSquared(offset) < reach * reach) {
         if (const float share = shareOf(i, hit.position, hit.ng); share > 0.0f)
           fn(hit, kPi * reach * reach * share / dot(hit.ng, normal));
       }
-      from = rays_.offsetOrigin(hit.position, -hit.ng);
+      from = accel_.offsetOrigin(hit.position, -hit.ng);
     }
   }
 
@@ -120,12 +120,12 @@ class Coverage {
 
   bool inSight(Vec3 at, Vec3 normal, uint32_t i) const {
     const float lift = kLift * reach_[i];
-    return !rays_.occluded(at + normal * lift, position_[i] + normal_[i] * lift);
+    return !accel_.occluded(at + normal * lift, position_[i] + normal_[i] * lift);
   }
 
   std::span<const Vec3> position_, normal_;
   std::vector<float> reach_;
-  const RayScene& rays_;
+  const Accelerator& accel_;
   ReachGrid grid_;
 };
 

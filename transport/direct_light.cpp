@@ -49,10 +49,10 @@ float SharedWithPhotons::ofRays(size_t light, Vec3 towards, float guided) const 
                                   lights->photonDensity(light, towards));
 }
 
-bool isHidden(const RayScene& rays, const SurfacePoint& at, const DirectSample& s) {
+bool isHidden(const Accelerator& accel, const SurfacePoint& at, const DirectSample& s) {
   const Vec3 side = dot(at.ng, s.wi) < 0.0f ? -at.ng : at.ng;  // the light may shine through
-  const Vec3 from = rays.offsetOrigin(at.position, side);
-  return s.infinite ? rays.occludedToInfinity(from, s.wi) : rays.occluded(from, s.target);
+  const Vec3 from = accel.offsetOrigin(at.position, side);
+  return s.infinite ? accel.occludedToInfinity(from, s.wi) : accel.occluded(from, s.target);
 }
 
 Vec3 emissionHit(const LightSet& lights, const SurfacePoint& hit, const Arrival& arrival) {

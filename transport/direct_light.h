@@ -151,7 +151,7 @@ struct BsdfRays {
 // against `rayPdf`, the density of the rays that find the same light by hitting it. emissionHit()
 // is the other half.
 template <typename Reflects, typename RayPdf>
-typename Reflects::Light directLight(const RayScene& rays, const LightSet& lights,
+typename Reflects::Light directLight(const Accelerator& accel, const LightSet& lights,
                                      const Reflects& reflected, const LightSampling& sampling,
                                      const RayPdf& rayPdf, const LightNumbers& numbers);
 
@@ -191,20 +191,20 @@ inline void addToGroup(const LightSampling& to, uint32_t group, const LightWithP
 }
 
 // Whether anything lies between a vertex and a point of the lights.
-bool isHidden(const RayScene& rays, const SurfacePoint& at, const DirectSample& sample);
+bool isHidden(const Accelerator& accel, const SurfacePoint& at, const DirectSample& sample);
 
 // Shadow rays that a vertex sends to one light, in the mean.
 float shadowRaysTo(const LightSet& lights, size_t light, LightChoice choice);
 
 // One shadow ray to a point of a light that gets `count` of them in the mean.
 template <typename Reflects, typename RayPdf>
-typename Reflects::Light shadowRay(const RayScene& rays, const LightSet& lights,
+typename Reflects::Light shadowRay(const Accelerator& accel, const LightSet& lights,
                                    const Reflects& reflected, const LightPlace& place, float count,
                                    const RayPdf& rayPdf, const SharedWithPhotons& photons) {
   DirectSample s;
   typename Reflects::Light light;
   if (!unoccludedLight(lights, reflected, place, s, light)) return {};
-  if (isHidden(rays, reflected.point(), s)) return {};
+  if (isHidden(accel, reflected.point(), s)) return {};
   const float other = s.pdf > 0.0f ? rayPdf(s.wi) : 0.0f;  // s.pdf 0: no ray can hit the light
   const float weight = other > 0.0f ? powerHeuristic(s.pdf * count, other) : 1.0f;
   return light * (weight * photons.ofRays(place.light, s.wi, reflected.point().position, [&] {
@@ -213,14 +213,14 @@ typename Reflects::Light shadowRay(const RayScene& rays, const LightSet& lights,
 }
 
 template <typename Reflects, typename RayPdf>
-typename Reflects::Light directLight(const RayScene& rays, const LightSet& lights,
+typename Reflects::Light directLight(const Accelerator& accel, const LightSet& lights,
                                      const Reflects& reflected, const LightSampling& sampling,
                                      const RayPdf& rayPdf, const LightNumbers& numbers) {
   typename Reflects::Light sum;
   const LearnedLight& learned = sampling.learned;
   const LightChoice choice = sampling.choice;
   const auto ray = [&](const LightPlace& place, float count) {
-    const auto light = shadowRay(rays, lights, reflected, place, count, rayPdf, sampling.photons);
+    const auto light = shadowRay(accel, lights, reflected, place, count, rayPdf, sampling.photons);
     sum += light;
     if (sampling.groups) addToGroup(sampling, lights.group(place.light), light);
   };

@@ -1,5 +1,5 @@
 // Embree 3 or 4, whichever CMake found. They differ in what is passed to a query beside its rays.
-// Used by rays.cpp and ray_filters.h only.
+// Used by accelerator.cpp and ray_filters.h only.
 #pragma once
 
 #if BNVPL_EMBREE_MAJOR >= 4

@@ -21,7 +21,7 @@ struct LeavingGroups {
 // vertex, `later` the rest. `at` is the vertex's BSDF, or one that represents it. `where` has the
 // distributions by which lights are sampled; null: by power. Returns the number of rough vertices
 // of the path, this one included; each takes about two rays.
-unsigned addLeavingLight(const RayScene& rays, const LightSet& lights, const Bsdf& at,
+unsigned addLeavingLight(const Accelerator& accel, const LightSet& lights, const Bsdf& at,
                          Vec3 throughput, PathLength length, const SpatialLightSampler* where,
                          Rng& rng, Vec3& first, Vec3& later, const LeavingGroups& groups = {});
 

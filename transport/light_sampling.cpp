@@ -56,7 +56,7 @@ bool LightSet::sampleArea(const Light& light, Vec3 at, float u, float v, DirectS
   out.pdf = d2 / (cosine * light.areaTotal) * density;
   out.radianceOverPdf = emission * (1.0f / out.pdf);
   out.infinite = false;
-  out.target = rays_.offsetOrigin(p, n);
+  out.target = accel_.offsetOrigin(p, n);
   return true;
 }
 
@@ -310,7 +310,7 @@ PhotonStart LightSet::emit(size_t index, const EmissionPoint& at) const {
       a = 2.0f * a - (back ? 0.0f : 1.0f);
     }
     start.direction = Basis(n).toWorld(sampleCosineHemisphere(a, at[3]));
-    start.origin = rays_.offsetOrigin(p, n);
+    start.origin = accel_.offsetOrigin(p, n);
     start.flux = fluxOf(light, emission) * (1.0f / density);
   } else if (s.type == LightType::Point) {
     start = {s.position, sampleSphere(at[0], at[1]), light.power};

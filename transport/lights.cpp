@@ -20,7 +20,7 @@ constexpr float kStrongest = 1e17f;
 
 }  // namespace
 
-LightSet::LightSet(const RayScene& rays) : rays_(rays), scene_(rays.scene()) {
+LightSet::LightSet(const Accelerator& accel) : accel_(accel), scene_(accel.scene()) {
   addAreaLights();
   addSpecLights();
   std::vector<double> weights;

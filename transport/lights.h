@@ -10,8 +10,8 @@
 #include "core/cdf.h"
 #include "core/random.h"
 #include "core/sampling.h"
+#include "transport/accelerator.h"
 #include "transport/emission_grid.h"
-#include "transport/rays.h"
 
 namespace bnvpl {
 
@@ -38,7 +38,7 @@ using EmissionPoint = std::array<float, 4>;
 class LightSet {
  public:
   // Throws InputError if the power of a light overflows floats.
-  explicit LightSet(const RayScene& rays);
+  explicit LightSet(const Accelerator& accel);
 
   size_t size() const { return lights_.size(); }
   Vec3 power(size_t light) const { return lights_[light].power; }
@@ -168,7 +168,7 @@ class LightSet {
     return emission * (kPi * light.areaTotal * (light.twoSided ? 2.0f : 1.0f));
   }
 
-  const RayScene& rays_;
+  const Accelerator& accel_;
   const Scene& scene_;
   std::vector<Light> lights_;
   std::vector<uint32_t> lightOfMaterial_;

@@ -51,14 +51,14 @@ class PhotonWalk {
   // at the maxBounces-th rough scattering. Russian roulette by reflectance keeps the flux nearly
   // constant.
   template <typename Visit>
-  void advance(const RayScene& rays, const SurfacePoint& hit, const Visit& visit) {
+  void advance(const Accelerator& accel, const SurfacePoint& hit, const Visit& visit) {
     ++fate_.rays;
     goesOn_ = false;
     if (hit.triangle == kNone) {
       fate_.escaped += flux_;
       return;
     }
-    const Bsdf bsdf(rays.scene(), hit);
+    const Bsdf bsdf(accel.scene(), hit);
     // Flux that does not continue counts as absorbed, Russian roulette included, so that escaped +
     // absorbed equals the emitted flux.
     fate_.absorbed += flux_;
@@ -78,7 +78,7 @@ class PhotonWalk {
     const bool last = lobes.specular() ? ++specular_ > kMaxSpecular : ++rough_ >= maxBounces_;
     BsdfSample sample;
     Ray next;
-    if (last || !scatter(rays, bsdf, lobes.group, Transport::Photons, rng_, sample, next)) return;
+    if (last || !scatter(accel, bsdf, lobes.group, Transport::Photons, rng_, sample, next)) return;
     const Vec3 onward = flux_ * sample.weight * (1.0f / (lobes.probability * survive));
     if (!isFinite(onward)) {
       fate_.finite = false;
@@ -101,11 +101,11 @@ class PhotonWalk {
 
 // Follows one photon to its end.
 template <typename Visit>
-PhotonFate followPhoton(const RayScene& rays, PhotonWalk walk, const Visit& visit) {
+PhotonFate followPhoton(const Accelerator& accel, PhotonWalk walk, const Visit& visit) {
   SurfacePoint hit;
   while (walk.goesOn()) {
-    rays.closestHit(walk.next().origin, walk.next().direction, hit);
-    walk.advance(rays, hit, visit);
+    accel.closestHit(walk.next().origin, walk.next().direction, hit);
+    walk.advance(accel, hit, visit);
   }
   return walk.fate();
 }

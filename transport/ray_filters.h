@@ -1,4 +1,5 @@
-// Filter functions that Embree calls for each triangle that a ray may hit. Used by rays.cpp only.
+// Filter functions that Embree calls for each triangle that a ray may hit. Used by accelerator.cpp
+// only.
 //
 // Embree divides by a reciprocal estimate whose precision depends on the processor, and with newer
 // instruction sets runs code that contracts products and sums. In its SSE2 code everything else is

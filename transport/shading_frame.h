@@ -1,7 +1,7 @@
 // Tangents, and shading normals from normal maps and bump maps.
 #pragma once
 
-#include "transport/rays.h"
+#include "transport/accelerator.h"
 
 namespace bnvpl {
 

@@ -40,7 +40,7 @@ std::vector<Group> groupsOf(std::span<const uint32_t> order, std::span<const Vec
 
 }  // namespace
 
-SpatialLightSampler::SpatialLightSampler(const RayScene& rays, const LightSet& lights,
+SpatialLightSampler::SpatialLightSampler(const Accelerator& accel, const LightSet& lights,
                                          std::span<const Vec3> points,
                                          std::span<const Vec3> normals,
                                          std::span<const float> radii, uint64_t key,
@@ -66,7 +66,7 @@ SpatialLightSampler::SpatialLightSampler(const RayScene& rays, const LightSet& l
     std::vector<Bsdf> vertices;
     for (const SurfacePoint& p : at) vertices.emplace_back(p, Vec3(1.0f));
     Rng rng(key, g);
-    found[g] = estimateStrata(rays, lights, strata_, vertices, kRaysEach, rng);
+    found[g] = estimateStrata(accel, lights, strata_, vertices, kRaysEach, rng);
     if (progress) progress(1);
   });
   groups_.resize(groups.size());

@@ -15,9 +15,9 @@ class SpatialLightSampler {
  public:
   // Takes points on surfaces, their unit normals, and the radius (> 0, world units) around each for
   // which it is representative. `key` seeds the random numbers.
-  SpatialLightSampler(const RayScene& rays, const LightSet& lights, std::span<const Vec3> points,
-                      std::span<const Vec3> normals, std::span<const float> radii, uint64_t key,
-                      const ProgressFn& progress);
+  SpatialLightSampler(const Accelerator& accel, const LightSet& lights,
+                      std::span<const Vec3> points, std::span<const Vec3> normals,
+                      std::span<const float> radii, uint64_t key, const ProgressFn& progress);
 
   // The distribution at a position; the mean of all where no point is near. Empty, with `all` null,
   // if there are fewer than two strata or no points.

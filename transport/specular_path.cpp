@@ -5,15 +5,15 @@
 
 namespace bnvpl {
 
-SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights, Vec3 origin,
+SpecularPath followSpecularPath(const Accelerator& accel, const LightSet& lights, Vec3 origin,
                                 Vec3 direction, const Arrival& start, Rng& rng,
                                 const SpecularLightSampling& specularLights) {
   SurfacePoint first;
-  rays.closestHit(origin, direction, first);
-  return followSpecularPath(rays, lights, first, direction, start, rng, specularLights);
+  accel.closestHit(origin, direction, first);
+  return followSpecularPath(accel, lights, first, direction, start, rng, specularLights);
 }
 
-SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights,
+SpecularPath followSpecularPath(const Accelerator& accel, const LightSet& lights,
                                 const SurfacePoint& first, Vec3 direction, const Arrival& start,
                                 Rng& rng, const SpecularLightSampling& specularLights,
                                 float roughImportance) {
@@ -35,12 +35,12 @@ SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights,
     if (end.specularBounces == 0) end.firstDistance = end.hit.distance;
     met += end.throughput * emissionHit(lights, end.hit, arrival);
 
-    if (const auto rough = roughEverywhere(rays.scene().materials[end.hit.material])) {
+    if (const auto rough = roughEverywhere(accel.scene().materials[end.hit.material])) {
       rng.next();  // chooseLobes() would consume it
       end.rough = *rough;
       return end;
     }
-    const Bsdf bsdf(rays.scene(), end.hit);
+    const Bsdf bsdf(accel.scene(), end.hit);
     const LobeChoice lobes =
         chooseLobes(bsdf, rng, end.specularBounces == 0 ? roughImportance : 1.0f);
     end.throughput *= 1.0f / lobes.probability;
@@ -55,7 +55,7 @@ SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights,
                : specularLights.others ? specularLights.others->at(end.hit.position, end.hit.ng)
                                        : LearnedStrata{};
       end.emissionLater +=
-          end.throughput * directLight(rays, lights, Reflected{bsdf, LobeGroup::Specular},
+          end.throughput * directLight(accel, lights, Reflected{bsdf, LobeGroup::Specular},
                                        {learnedBy(strata), LightChoice::One, start.shared,
                                         specularLights.emissionLater.times(end.throughput)},
                                        BsdfRays{bsdf, 1.0f, LobeGroup::Specular},
@@ -63,12 +63,12 @@ SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights,
     }
     BsdfSample sample;
     Ray next;
-    if (!scatter(rays, bsdf, LobeGroup::Specular, Transport::Radiance, rng, sample, next))
+    if (!scatter(accel, bsdf, LobeGroup::Specular, Transport::Radiance, rng, sample, next))
       return end;
     end.throughput *= sample.weight;
     arrival = {sample.pdf, end.hit.position, LightChoice::One, learnedBy(strata), start.shared};
     direction = next.direction;
-    rays.closestHit(next.origin, direction, end.hit);
+    accel.closestHit(next.origin, direction, end.hit);
   }
 }
 

@@ -29,12 +29,12 @@ struct SpecularPath {
 
 // `arrival` describes the first segment; its `shared` holds for the segments behind specular
 // vertices.
-SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights, Vec3 origin,
+SpecularPath followSpecularPath(const Accelerator& accel, const LightSet& lights, Vec3 origin,
                                 Vec3 direction, const Arrival& arrival, Rng& rng,
                                 const SpecularLightSampling& specularLights = {});
 // The same with a given first hit; first.triangle is kNone if the ray leaves the scene.
 // `roughImportance` is passed to chooseLobes() at the first hit.
-SpecularPath followSpecularPath(const RayScene& rays, const LightSet& lights,
+SpecularPath followSpecularPath(const Accelerator& accel, const LightSet& lights,
                                 const SurfacePoint& first, Vec3 direction, const Arrival& arrival,
                                 Rng& rng, const SpecularLightSampling& specularLights = {},
                                 float roughImportance = 1.0f);

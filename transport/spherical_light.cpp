@@ -54,20 +54,20 @@ float cosinesOverHemisphere(Vec3 received, Vec3 normal, float radius2) {
 
 }  // namespace
 
-Vec3 sphericalTransfer(const SphericalVpl& vpl, const Bsdf& bsdf, uint64_t key) {
+SphericalTransfer sphericalTransfer(const SphericalVpl& vpl, const Bsdf& bsdf, uint64_t key) {
   const SphereCone cone(vpl, bsdf);
   const Vec3 ns = bsdf.point().ns, ng = bsdf.point().ng;
   if (bsdf.diffuseOnly()) {
     if (cone.inside && ns == ng)
-      return bsdf.diffuseValue() * cosinesOverHemisphere(ns, vpl.normal, vpl.radius2);
+      return {bsdf.diffuseValue() * cosinesOverHemisphere(ns, vpl.normal, vpl.radius2), false};
     const float whole = std::sqrt(cone.sin2);  // cosine of an axis whose cone touches the horizon
     if (!cone.inside && dot(ns, cone.axis) >= whole && dot(ng, cone.axis) >= whole &&
         -dot(vpl.normal, cone.axis) >= whole)
-      return bsdf.diffuseValue() * cosinesOverCone(cone, ns, vpl.normal);
+      return {bsdf.diffuseValue() * cosinesOverCone(cone, ns, vpl.normal), false};
   }
   const float share = std::sqrt(1.0f - cone.cosine);
-  return sampledSphericalTransfer(
-      vpl, bsdf, std::max(1u, static_cast<unsigned>(std::ceil(kMaxSamples * share))), key);
+  const auto samples = std::max(1u, static_cast<unsigned>(std::ceil(kMaxSamples * share)));
+  return {sampledSphericalTransfer(vpl, bsdf, samples, key), true};
 }
 
 Vec3 sampledSphericalTransfer(const SphericalVpl& vpl, const Bsdf& bsdf, unsigned samples,

@@ -19,12 +19,18 @@ struct SphericalVpl {
   float radius2;  // squared radius, > 0
 };
 
-// BSDF and cosines over the sphere, 1/m2, without intensity. Closed form where the receiver is
-// diffuse and no horizon cuts the cone, else the mean of samples, whose numbers depend on `key`.
-Vec3 sphericalTransfer(const SphericalVpl& vpl, const Bsdf& bsdf, uint64_t key);
+// `value`: BSDF and cosines over the sphere, 1/m2, without intensity.
+struct SphericalTransfer {
+  Vec3 value;
+  bool sampled;  // a mean of samples, no closed form
+};
 
-// The same by `samples` directions of the cone and, for a glossy receiver that sees a large sphere,
-// as many of the BSDF, with MIS weights.
+// Closed form where the receiver is diffuse and no horizon cuts the cone, else the mean of samples,
+// whose numbers depend on `key`.
+SphericalTransfer sphericalTransfer(const SphericalVpl& vpl, const Bsdf& bsdf, uint64_t key);
+
+// The value by `samples` directions of the cone and, for a glossy receiver that sees a large
+// sphere, as many of the BSDF, with MIS weights.
 Vec3 sampledSphericalTransfer(const SphericalVpl& vpl, const Bsdf& bsdf, unsigned samples,
                               uint64_t key);
 

@@ -7,8 +7,9 @@
 
 namespace bnvpl {
 
-StrataValues estimateStrata(const RayScene& rays, const LightSet& lights, const LightStrata& strata,
-                            std::span<const Bsdf> vertices, size_t raysEach, Rng& rng) {
+StrataValues estimateStrata(const Accelerator& accel, const LightSet& lights,
+                            const LightStrata& strata, std::span<const Bsdf> vertices,
+                            size_t raysEach, Rng& rng) {
   StrataValues out;
   if (vertices.empty()) return out;
   for (uint32_t s = 0; s < strata.size(); ++s) {
@@ -21,7 +22,7 @@ StrataValues estimateStrata(const RayScene& rays, const LightSet& lights, const 
       DirectSample sample;
       Vec3 reflected;
       if (!unoccludedLight(lights, Reflected{bsdf}, place, sample, reflected) ||
-          isHidden(rays, bsdf.point(), sample))
+          isHidden(accel, bsdf.point(), sample))
         continue;
       const float contribution = mean(reflected) * strata.share(s) / strata.lightShare(place.light);
       sum += contribution * contribution;

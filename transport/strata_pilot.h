@@ -11,8 +11,9 @@ namespace bnvpl {
 
 // Sends `raysEach` shadow rays to each stratum, each from a random one of the vertices. Returns the
 // strata with a contribution, and the mean square of the estimate that samples only this stratum.
-StrataValues estimateStrata(const RayScene& rays, const LightSet& lights, const LightStrata& strata,
-                            std::span<const Bsdf> vertices, size_t raysEach, Rng& rng);
+StrataValues estimateStrata(const Accelerator& accel, const LightSet& lights,
+                            const LightStrata& strata, std::span<const Bsdf> vertices,
+                            size_t raysEach, Rng& rng);
 
 // Pools the mean squares of several places. The variance of a sum of estimates is minimal if each
 // is sampled in proportion to the root of its mean square.

@@ -10,13 +10,13 @@
 
 namespace bnvpl {
 
-VplLights makeVplLights(const VplTable& lit, const RayScene& rays, float clamp, LightKind kind,
+VplLights makeVplLights(const VplTable& lit, const Accelerator& accel, float clamp, LightKind kind,
                         const VplGroups& groups, float oneRadius) {
   VplLights lights;
   lights.groups = groups.groups;
   lights.kind = kind;
   // Min distance, below which rays cannot tell points apart. It keeps 1/d^2 finite without a clamp.
-  const float nearest = rays.scene().offsetSize() * 0x1p-20f;
+  const float nearest = accel.scene().offsetSize() * 0x1p-20f;
   for (size_t i = 0; i < lit.size(); ++i) {
     if (!(mean(lit.flux[i]) * (1.0f / kPi) > 0.0f)) continue;  // dark, or too faint for floats
     ++lights.vplCount;
@@ -28,7 +28,7 @@ VplLights makeVplLights(const VplTable& lit, const RayScene& rays, float clamp, 
       const Vec3 normal = lit.emitNormal[i * lit.emitPoints + k];
       const float part = static_cast<float>(same) / static_cast<float>(lit.emitPoints);
       lights.row.push_back(static_cast<uint32_t>(i));
-      lights.position.push_back(rays.offsetOrigin(at[k], normal));
+      lights.position.push_back(accel.offsetOrigin(at[k], normal));
       lights.normal.push_back(normal);
       lights.intensity.push_back(lit.flux[i] * (part / kPi));
       for (uint32_t g = 0; g < groups.groups; ++g)
@@ -53,7 +53,8 @@ bool integratedTransfer(const VplLights& vpls, size_t i, const Bsdf& bsdf, Vec3 
   uint64_t key = i;
   for (const float x : {at.position.x, at.position.y, at.position.z})
     key = mix64(key ^ std::bit_cast<uint32_t>(x));
-  out = {sphericalTransfer({d, vpls.normal[i], vpls.clamp2[i]}, bsdf, key), 0.0f};
+  const SphericalTransfer found = sphericalTransfer({d, vpls.normal[i], vpls.clamp2[i]}, bsdf, key);
+  out = {found.value, 0.0f, found.sampled};
   return !isBlack(out.transfer);
 }
 

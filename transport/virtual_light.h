@@ -34,13 +34,14 @@ struct VplLights {
 
 // `clamp` is in units of each VPL's radius (r_max), or of `oneRadius` if that is not 0. `groups`:
 // the table's flux by light group.
-VplLights makeVplLights(const VplTable& lit, const RayScene& rays, float clamp, LightKind kind = {},
-                        const VplGroups& groups = {}, float oneRadius = 0.0f);
+VplLights makeVplLights(const VplTable& lit, const Accelerator& accel, float clamp,
+                        LightKind kind = {}, const VplGroups& groups = {}, float oneRadius = 0.0f);
 
 // The unoccluded geometry of one VPL and one receiver, without intensity.
 struct VplTransfer {
   Vec3 transfer;           // BSDF * cosines * falloff, 1/m2
   float clampLoss = 0.0f;  // contribution that the bound removes, relative to transfer
+  bool sampled = false;    // a mean of samples (spherical_light.h)
 };
 
 // The same for kinds that are not seen from their centre. `d`: towards the VPL.

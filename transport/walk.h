@@ -22,16 +22,16 @@ inline LobeChoice chooseLobes(const Bsdf& bsdf, Rng& rng, float roughImportance 
 }
 
 // The ray from a vertex in a sampled direction.
-inline Ray rayOn(const RayScene& rays, const SurfacePoint& vertex, const BsdfSample& sample) {
-  return {rays.offsetOrigin(vertex.position, sample.side), sample.wi};
+inline Ray rayOn(const Accelerator& accel, const SurfacePoint& vertex, const BsdfSample& sample) {
+  return {accel.offsetOrigin(vertex.position, sample.side), sample.wi};
 }
 
 // Samples a direction from a group of lobes, and sets `next` to the ray in this direction. Returns
 // false if the path is absorbed.
-inline bool scatter(const RayScene& rays, const Bsdf& bsdf, LobeGroup group, Transport transport,
-                    Rng& rng, BsdfSample& sample, Ray& next) {
+inline bool scatter(const Accelerator& accel, const Bsdf& bsdf, LobeGroup group,
+                    Transport transport, Rng& rng, BsdfSample& sample, Ray& next) {
   if (!bsdf.sample(group, transport, rng, sample)) return false;
-  next = rayOn(rays, bsdf.point(), sample);
+  next = rayOn(accel, bsdf.point(), sample);
   return true;
 }
 

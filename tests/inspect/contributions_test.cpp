@@ -34,9 +34,9 @@ class ContributionsTest : public InspectTest {
     scene_ = loadScene(at("tiny.toml"));
   }
   Contributions found(size_t perPixel) const {
-    const RayScene rays(scene_);
+    const Accelerator accel(scene_);
     const ContributionOptions options{.film = {16, 12}, .samplesPerAxis = 1, .perPixel = perPixel};
-    return contributionsOf(rays, litRows(scene_.contentHash), options, {});
+    return contributionsOf(accel, litRows(scene_.contentHash), options, {});
   }
   Scene scene_;
 };
@@ -64,9 +64,9 @@ TEST_F(ContributionsTest, PixelsListTheirVplsStrongestFirst) {
 
 // The light of a pixel by the formula of the VPL, at the point that its ray meets.
 TEST_F(ContributionsTest, SharesAreThoseOfTheLight) {
-  const RayScene rays(scene_);
+  const Accelerator accel(scene_);
   const VplTable table = litRows(scene_.contentHash);
-  const VplLights vpls = makeVplLights(table, rays, 2.0f);
+  const VplLights vpls = makeVplLights(table, accel, 2.0f);
   const Contributions all = found(64);
   const Film film{16, 12};
   for (const size_t pixel : {17u, 70u, 100u, 150u}) {
@@ -74,13 +74,13 @@ TEST_F(ContributionsTest, SharesAreThoseOfTheLight) {
     const float y = (static_cast<float>(pixel / 16) + 0.5f) / 12.0f;
     SurfacePoint hit;
     ASSERT_TRUE(
-        rays.closestHit(scene_.camera.position, cameraDirection(scene_.camera, film, x, y), hit));
+        accel.closestHit(scene_.camera.position, cameraDirection(scene_.camera, film, x, y), hit));
     const Bsdf bsdf(scene_, hit);
     std::vector<double> light(table.size());
     for (size_t i = 0; i < vpls.size(); ++i) {
       VplTransfer c;
       if (!unoccludedTransfer(vpls, i, bsdf, c) ||
-          rays.occluded(rays.offsetOrigin(hit.position, hit.ng), vpls.position[i]))
+          accel.occluded(accel.offsetOrigin(hit.position, hit.ng), vpls.position[i]))
         continue;
       const Vec3 radiance = c.transfer * vpls.intensity[i];
       light[vpls.row[i]] = double{radiance.x + radiance.y + radiance.z} / 3.0;

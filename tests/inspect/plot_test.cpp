@@ -14,8 +14,9 @@ class Plot : public InspectTest {
     scene_ = loadScene(at("tiny.toml"));
   }
   // Indices of the pixels that the dots changed.
-  std::vector<size_t> changed(const RayScene& rays, const std::vector<Dot>& dots, float diameter) {
-    Canvas canvas = shadeView(rays, 2);
+  std::vector<size_t> changed(const Accelerator& accel, const std::vector<Dot>& dots,
+                              float diameter) {
+    Canvas canvas = shadeView(accel, 2);
     const std::vector<uint8_t> before = canvas.rgb8();
     canvas.paint(dots, diameter);
     const std::vector<uint8_t> after = canvas.rgb8();
@@ -29,10 +30,10 @@ class Plot : public InspectTest {
 };
 
 TEST_F(Plot, DotsStandWhereTheRowsProject) {
-  const RayScene rays(scene_);
+  const Accelerator accel(scene_);
   PlotCounts counts;
   const VplTable table = tinyRows(scene_.contentHash);
-  const std::vector<Dot> dots = visibleDots(table, rays, {}, counts);
+  const std::vector<Dot> dots = visibleDots(table, accel, {}, counts);
   ASSERT_EQ(dots.size(), 1u);
   EXPECT_EQ(counts.drawn, 1u);
   EXPECT_EQ(counts.occluded, 1u);
@@ -41,7 +42,7 @@ TEST_F(Plot, DotsStandWhereTheRowsProject) {
 
   const RasterPoint film = projectToFilm(scene_.camera, scene_.film, table.position[0]);
   const float x = film.x * 80, y = film.y * 60;
-  const std::vector<size_t> pixels = changed(rays, dots, 5.0f);
+  const std::vector<size_t> pixels = changed(accel, dots, 5.0f);
   ASSERT_FALSE(pixels.empty());
   bool centre = false;
   for (const size_t i : pixels) {
@@ -54,15 +55,15 @@ TEST_F(Plot, DotsStandWhereTheRowsProject) {
 }
 
 TEST_F(Plot, ShowBackDrawsRings) {
-  const RayScene rays(scene_);
+  const Accelerator accel(scene_);
   PlotCounts counts;
   PlotOptions options;
   options.showBack = true;
-  const std::vector<Dot> dots = visibleDots(tinyRows(scene_.contentHash), rays, options, counts);
+  const std::vector<Dot> dots = visibleDots(tinyRows(scene_.contentHash), accel, options, counts);
   ASSERT_EQ(dots.size(), 2u);
   EXPECT_FALSE(dots[0].hollow);
   EXPECT_TRUE(dots[1].hollow);
-  const std::vector<size_t> ring = changed(rays, {dots[1]}, 9.0f);
+  const std::vector<size_t> ring = changed(accel, {dots[1]}, 9.0f);
   ASSERT_FALSE(ring.empty());
   const size_t centre = static_cast<size_t>(dots[1].y) * 80 + static_cast<size_t>(dots[1].x);
   EXPECT_EQ(std::count(ring.begin(), ring.end(), centre), 0);  // the ring is hollow
@@ -87,35 +88,35 @@ TEST_F(Plot, DotsAtTheEdgeAreCut) {
 }
 
 TEST_F(Plot, ColoursNeedTheirColumn) {
-  const RayScene rays(scene_);
+  const Accelerator accel(scene_);
   PlotCounts counts;
   PlotOptions options;
   options.colour = DotColour::Flux;
   VplTable table = tinyRows(scene_.contentHash);
-  EXPECT_TRUE(contains(messageOf<InputError>([&] { visibleDots(table, rays, options, counts); }),
+  EXPECT_TRUE(contains(messageOf<InputError>([&] { visibleDots(table, accel, options, counts); }),
                        "vpl-estimate or a vpl-place --method that lights VPLs"));
   options.colour = DotColour::Radius;
-  EXPECT_TRUE(contains(messageOf<InputError>([&] { visibleDots(table, rays, options, counts); }),
+  EXPECT_TRUE(contains(messageOf<InputError>([&] { visibleDots(table, accel, options, counts); }),
                        "vpl-eliminate"));
 
   table.stage = VplStage::Lit;
   table.radius = {1, 2, 3, 4};
   table.flux = {{2, 1, 0}, {0, 0.01f, 0}, {0.5f, 0, 0}, {0, 0, 0}};
   options.colour = DotColour::Flux;
-  const Vec3 strongest = visibleDots(table, rays, options, counts).at(0).colour;
+  const Vec3 strongest = visibleDots(table, accel, options, counts).at(0).colour;
   table.flux[0] = {0, 0, 0.001f};
-  const Vec3 weakest = visibleDots(table, rays, options, counts).at(0).colour;
+  const Vec3 weakest = visibleDots(table, accel, options, counts).at(0).colour;
   EXPECT_GT(luminance(strongest), 2.0f * luminance(weakest));
 }
 
 TEST_F(Plot, EmptyTable) {
-  const RayScene rays(scene_);
+  const Accelerator accel(scene_);
   PlotCounts counts;
   VplTable table;
   table.stage = VplStage::Eliminated;
   PlotOptions options;
   options.colour = DotColour::Radius;
-  EXPECT_TRUE(visibleDots(table, rays, options, counts).empty());
+  EXPECT_TRUE(visibleDots(table, accel, options, counts).empty());
 }
 
 }  // namespace

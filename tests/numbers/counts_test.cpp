@@ -58,7 +58,7 @@ TEST(Counts, BillionsOfPhotonsCanBegin) {
   for (const uint64_t photons : {uint64_t{5000000000}, kMaxPhotons}) {
     const Values options = resolve(estimateSpec(), {{"photons", std::to_string(photons)}});
     EXPECT_THROW(
-        estimate(vpls, world.rays, world.lights, options, [](uint64_t) { throw Enough{}; }),
+        estimate(vpls, world.accel, world.lights, options, [](uint64_t) { throw Enough{}; }),
         Enough);
   }
   EXPECT_THROW(resolve(estimateSpec(), {{"photons", std::to_string(kMaxPhotons + 1)}}), UsageError);

@@ -119,7 +119,7 @@ TEST(FewVpls, RadiiBeyondFloatsAreRefused) {
 TEST(FewVpls, AVplAtTheShadedPoint) {
   const World world = smallCornell();
   SurfacePoint at;
-  ASSERT_TRUE(world.rays.closestHit({0.278f, 0.3f, 0.28f}, {0, -1, 0}, at));  // floor or box
+  ASSERT_TRUE(world.accel.closestHit({0.278f, 0.3f, 0.28f}, {0, -1, 0}, at));  // floor or box
   const Bsdf bsdf(world.scene, at);
   bool seesNothing = false;
   const auto gathered = [&](const std::vector<Vec3>& offsets, const std::string& method,

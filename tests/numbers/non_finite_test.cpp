@@ -62,8 +62,8 @@ TEST(Sky, PolesOfAFineImage) {
   sky.type = LightType::Environment;
   sky.image = 0;
   scene.lights.push_back(sky);
-  const RayScene rays(scene);
-  const LightSet lights(rays);
+  const Accelerator accel(scene);
+  const LightSet lights(accel);
   EXPECT_TRUE(isFinite(lights.totalPower()));
   for (const Vec3 direction : {Vec3(0, 1, 0), Vec3(0, -1, 0), Vec3(0, 0, 1)}) {
     lights.forEachAtInfinity(direction, [&](size_t, Vec3 radiance, float pdf) {
@@ -105,10 +105,10 @@ TEST_F(NonFinite, TextureCoordinatesBeyondFloats) {
                        "\nvt 1e10 0\nvt 0 -1e36\nusemtl paint\nf 1/1 2/2 3/3\n",
                    std::string("newmtl paint\nKd 0.5 0.5 0.5\nmap_Kd ") + options +
                        "white.tga\nmap_d " + options + "white.tga\n");
-      const RayScene rays(scene);
+      const Accelerator accel(scene);
       for (const float x : {-0.2f, 0.1f, 0.6f}) {
         SurfacePoint hit;
-        if (!rays.closestHit({x, -0.5f, 1}, {0, 0, -1}, hit)) continue;
+        if (!accel.closestHit({x, -0.5f, 1}, {0, 0, -1}, hit)) continue;
         EXPECT_TRUE(isFinite(Bsdf(scene, hit).roughAlbedo())) << coordinates << options;
       }
     }
@@ -135,7 +135,7 @@ TEST_F(NonFinite, MaterialsOfAbsurdSize) {
 TEST_F(NonFinite, SamplesAreCountedAsZero) {
   const World world(room({"metres"}));
   const auto layers = parseLayers("all");
-  const auto firstHits = traceFirstHits(world.rays, {}, layers, 1, 4);
+  const auto firstHits = traceFirstHits(world.accel, {}, layers, 1, 4);
   const float bad[] = {std::nanf(""), kInf, -kInf, 3e38f};
   for (const float value : bad) {
     FilmStats stats;
@@ -183,7 +183,7 @@ TEST_F(NonFinite, PhotonsAreCutOffAndCounted) {
     PhotonStart start{{0, 1, 0}, {0, -1, 0}, Vec3(flux)};
     Rng rng(1, 1);
     int visits = 0;
-    const PhotonFate fate = followPhoton(world.rays, PhotonWalk(start, 8, rng),
+    const PhotonFate fate = followPhoton(world.accel, PhotonWalk(start, 8, rng),
                                          [&](const Bsdf&, Vec3, bool) { ++visits; });
     EXPECT_FALSE(fate.finite);
     EXPECT_EQ(visits, 0);

@@ -11,7 +11,7 @@ namespace bnvpl::test {
 namespace {
 
 double shareOf(const World& world, uint64_t seed = 1) {
-  return indirectShare({world.rays, world.lights, PlaceViews(world.scene)}, seed);
+  return indirectShare({world.accel, world.lights, PlaceViews(world.scene)}, seed);
 }
 
 // The same by the path tracer: mean over pixels of indirect light / all light.
@@ -77,7 +77,7 @@ TEST(IndirectShare, OfSeveralViewsIsTheLargest) {
   const auto share = [&](std::vector<View> views) {
     const std::vector<uint64_t> turns(views.size(), 1);
     const PlaceViews of(std::move(views), turns);
-    return indirectShare({world.rays, world.lights, of}, 1);
+    return indirectShare({world.accel, world.lights, of}, 1);
   };
   EXPECT_LT(share({right}), 0.9);
   EXPECT_EQ(share({right, left}), share({left, right}));

@@ -39,7 +39,7 @@ TEST(Place, ShardsEndWithEnoughOfTheirPathsForAllTogether) {
     Resume resume;
     resume.shard = {i, i + 1, 5};
     resume.sink = &sink;
-    placeShard({world.rays, world.lights, views}, options, 0.0, resume);
+    placeShard({world.accel, world.lights, views}, options, 0.0, resume);
   }
   ShardSource source;
   source.record = [&](std::string_view work, uint64_t unit) -> std::optional<std::string> {
@@ -93,7 +93,7 @@ class TwoRooms : public ::testing::Test {
   }
   VplTable placed(const std::vector<View>& views, const std::vector<uint64_t>& shares,
                   const Given& options) const {
-    return place({world.rays, world.lights, PlaceViews(views, shares)},
+    return place({world.accel, world.lights, PlaceViews(views, shares)},
                  resolve(placeSpec(), options))
         .table;
   }
@@ -109,7 +109,7 @@ TEST_F(TwoRooms, CandidatesHaveTheDensityOfTheViewsByTheirShares) {
   ASSERT_GT(ofRight, ofLeft + 0.5);
   const PlaceViews views({left(), right()}, {3, 1});
   const PlaceResult both =
-      place({world.rays, world.lights, views}, resolve(placeSpec(), count(20000)));
+      place({world.accel, world.lights, views}, resolve(placeSpec(), count(20000)));
   ASSERT_EQ(both.rowsOfView.size(), 2u);
   EXPECT_EQ(both.rowsOfView[0] + both.rowsOfView[1], 20000u);
   const double share = double(both.rowsOfView[1]) / 20000.0;
@@ -144,7 +144,7 @@ TEST(Place, CandidatesLieOnSurfacesAndFaceTheSideTheyWereSeenFrom) {
   for (size_t i = 0; i < t.size(); ++i) {
     ASSERT_NEAR(length(t.normal[i]), 1.0f, 1e-5f);
     SurfacePoint hit;
-    ASSERT_TRUE(world.rays.closestHit(t.position[i] + t.normal[i] * 1e-3f, -t.normal[i], hit));
+    ASSERT_TRUE(world.accel.closestHit(t.position[i] + t.normal[i] * 1e-3f, -t.normal[i], hit));
     EXPECT_NEAR(hit.distance, 1e-3f, 2e-4f);
     EXPECT_GT(dot(hit.ng, t.normal[i]), 0.999f);
   }

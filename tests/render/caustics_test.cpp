@@ -60,11 +60,11 @@ TEST(Caustics, PhotonsAndRaysShareTheLight) {
 
 NearFieldRays nearField(const World& world, const VplTable& lit, const char* compensate,
                         GatherPoint point) {
-  return {world.rays,
+  return {world.accel,
           world.lights,
           std::move(point),
           methodNamed(compensateMethods(), compensate)
-              .make({lit, world.rays, 2.0f, LightKind{}, {}}, {}),
+              .make({lit, world.accel, 2.0f, LightKind{}, {}}, {}),
           1,
           nullptr,
           Only::Indirect};
@@ -109,7 +109,7 @@ TEST(Caustics, RaysFollowTheLobesThatVplsDoNotCover) {
   seen.position = {0.14f, 0.4f, 0.28f};
   for (const Vec3 way : {Vec3{1, 0, 0}, Vec3{-1, 0, 0}}) {
     SurfacePoint wall;
-    world.rays.closestHit(seen.position, way, wall);
+    world.accel.closestHit(seen.position, way, wall);
     if (world.scene.materials[wall.material].name == "Red") seen.ng = seen.ns = seen.wo = way;
   }
   const Bsdf bsdf(seen, Vec3(1.0f));
@@ -192,11 +192,11 @@ TEST(Caustics, EmittersWithTooFewPhotonsAreLeftToRays) {
   size_t lamp = 0;
   while (!world.lights.hittable(lamp)) ++lamp;
   SurfacePoint seen;
-  ASSERT_TRUE(world.rays.closestHit(
+  ASSERT_TRUE(world.accel.closestHit(
       world.scene.camera.position,
       cameraDirection(world.scene.camera, world.scene.film, 0.5f, 0.5f), seen));
   const auto share = [&](uint64_t photons, bool left) {
-    const Caustics caustics(world.rays, world.lights, {}, photons, 8.0f, 0, 3, 0, {});
+    const Caustics caustics(world.accel, world.lights, {}, photons, 8.0f, 0, 3, 0, {});
     EXPECT_GT(caustics.stats().lamps, 0u);
     EXPECT_EQ(caustics.stats().sparseLamps == caustics.stats().lamps, left) << photons;
     return caustics.shared(seen, world.scene.camera.position).ofRays(lamp, {0, 1, 0}, 1.0f);

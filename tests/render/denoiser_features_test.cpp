@@ -41,13 +41,13 @@ DenoiserFeatures seen(const Material& material, Wall wall, Vec3 from = {0, 0, 5}
   if (wall == Wall::Below)
     addSquare(scene, {-200, -200, -10}, {400, 0, 0}, {0, 400, 0}, lambert(kWall));
   finishScene(scene);
-  const RayScene rays(scene);
+  const Accelerator accel(scene);
   DenoiserFeatures sum;
   for (int i = 0; i < draws; ++i) {
     Rng rng(streamKey(42, Stream::PixelSamples), uint64_t(i));
     SurfacePoint hit;
-    EXPECT_TRUE(rays.closestHit(from, normalize(-from), hit));
-    sum += denoiserFeatures(rays, hit, rng);
+    EXPECT_TRUE(accel.closestHit(from, normalize(-from), hit));
+    sum += denoiserFeatures(accel, hit, rng);
   }
   const float each = 1.0f / float(draws);
   return {sum.albedo * each, sum.normal * each};
@@ -136,13 +136,13 @@ TEST(DenoiserFeatures, TexturesColourTheAlbedo) {
   scene.textures.push_back(texture);
   scene.expressions.push_back(imageExpression(0));
   finishScene(scene);
-  const RayScene rays(scene);
+  const Accelerator accel(scene);
   for (const auto& [x, albedo] :
        {std::pair{-0.5f, Vec3(1, 0, 0.2f)}, std::pair{0.5f, Vec3(0, 0.4f, 0.8f)}}) {
     SurfacePoint hit;
-    ASSERT_TRUE(rays.closestHit({x, 0.2f, 5}, {0, 0, -1}, hit));
+    ASSERT_TRUE(accel.closestHit({x, 0.2f, 5}, {0, 0, -1}, hit));
     Rng rng(1, 1);
-    expectFeatures(denoiserFeatures(rays, hit, rng), albedo, kUp, 0.01f);
+    expectFeatures(denoiserFeatures(accel, hit, rng), albedo, kUp, 0.01f);
   }
 }
 

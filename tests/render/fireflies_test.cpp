@@ -208,7 +208,7 @@ TEST(Fireflies, IntegratorsReportVisibleEmission) {
     const Values options = resolveRender(test::with({{"only", "direct"}, {"spp", "4"}}, way));
     const ProgressFn quiet;
     const Integrator integrator = integratorOf(options).make(
-        {world.rays, world.lights, {}, 1, Only::Direct, {}, quiet}, options);
+        {world.accel, world.lights, {}, 1, Only::Direct, {}, quiet}, options);
     float most = 0.0f;
     const Tiles tiles(world.scene.film);
     for (size_t t = 0; t < tiles.count(); ++t) {

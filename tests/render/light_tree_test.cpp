@@ -17,7 +17,7 @@ const GatherCase& lit() {
 }
 
 TEST(LightTree, EveryNodeHoldsItsLights) {
-  const VplLights vpls = makeVplLights(lit().lit, lit().world.rays, 1.0f);
+  const VplLights vpls = makeVplLights(lit().lit, lit().world.accel, 1.0f);
   const LightTree tree = buildLightTree(vpls, 1);
   ASSERT_EQ(tree.nodes.size(), 2 * vpls.size() - 1);
   // From the leaves up (children come after their parent), collect each node's lights.
@@ -47,7 +47,7 @@ TEST(LightTree, EveryNodeHoldsItsLights) {
 
 // Relative standard deviation of a gather of one VPL that is drawn uniformly.
 double deviationOfAnyVpl(const World& world, const VplLights& vpls, const Bsdf& bsdf) {
-  const ShadowTest one(world.rays, vpls, bsdf);
+  const ShadowTest one(world.accel, vpls, bsdf);
   double sum = 0.0, squares = 0.0;
   for (size_t i = 0; i < vpls.size(); ++i) {
     const double brings = mean(one.of(i).radiance);
@@ -60,7 +60,7 @@ double deviationOfAnyVpl(const World& world, const VplLights& vpls, const Bsdf& 
 // The mean of the sampled gather equals the sum over all VPLs at every point and in every channel.
 TEST(SampledGather, IsTheSumOverAllOnAverage) {
   const World& world = lit().world;
-  const VplLights vpls = makeVplLights(lit().lit, world.rays, 1.0f);
+  const VplLights vpls = makeVplLights(lit().lit, world.accel, 1.0f);
   const GatherOf gather(world, vpls, {{"gather", "all"}});
   const Vec3 middle = world.scene.camera.position;
   Rng rng(streamKey(5, Stream::PixelSamples), 0);
@@ -70,7 +70,7 @@ TEST(SampledGather, IsTheSumOverAllOnAverage) {
     SurfacePoint hit;
     const Vec3 direction = normalize(world.scene.camera.forward +
                                      0.3f * Vec3{rng.next() - 0.5f, rng.next() - 0.5f, 0.0f});
-    if (!world.rays.closestHit(middle, direction, hit)) continue;
+    if (!world.accel.closestHit(middle, direction, hit)) continue;
     const Bsdf bsdf(world.scene, hit);
     const Vec3 all = gather.at(bsdf).radiance;
     if (mean(all) <= 0.0f) continue;

@@ -17,7 +17,7 @@ VplTable litBy(const World& world) {
 }
 
 SpatialLightSampler learned(const World& world, const VplTable& vpls) {
-  return {world.rays, world.lights, vpls.position, vpls.normal, vpls.radius, 7, {}};
+  return {world.accel, world.lights, vpls.position, vpls.normal, vpls.radius, 7, {}};
 }
 
 TEST(SpatialLightSampler, FewRaysGoToHiddenLights) {

@@ -148,6 +148,28 @@ TEST(SphericalLights, AreTheSameForAnyThreadsAndShards) {
   expectSameBytesInShards("all", spheres);
 }
 
+// Light of a diffuse box has a closed form but where a horizon cuts a sphere. The counter stands
+// after those of the gather.
+TEST(SphericalLights, CountWhatIsSampled) {
+  const GatherCase& c = *gatherCases().front();
+  const auto shown = [&](const char* gather) {
+    return renderVpls(
+        c.world, c.lit,
+        with(with(kPlainRender, {{"light", "spherical"}, {"clamp", "2"}, {"spp", "1"}}),
+             {{"gather", gather}, {"layers", "sampledpairs"}}));
+  };
+  const FilmStats all = shown("all").stats;
+  EXPECT_GT(all.own[0], 0.02 * all.shadowRays);
+  EXPECT_LT(all.own[0], 0.5 * all.shadowRays);
+  const RenderResult ward = shown("ward");
+  EXPECT_EQ(ward.stats.own[0], all.own[0]);
+  EXPECT_NEAR(meanOfLayer(ward.image, "sampledpairs"), all.own[0], 1e-4 * all.own[0]);
+  const RenderResult last = shown("lie");
+  EXPECT_NEAR(meanOfLayer(last.image, "sampledpairs"), last.stats.own[3], 1e-4 * all.own[0]);
+  EXPECT_GT(last.stats.own[3], 0.1 * all.own[0]);
+  EXPECT_LE(last.stats.own[3], all.own[0]);
+}
+
 // Where no sphere reaches, spheres and points are alike.
 TEST(SphericalLights, BetweenTwoPatchesArePoints) {
   Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "test/two-patches.toml");

@@ -6,7 +6,7 @@
 #include "scene/scene_builder.h"
 #include "scene/scene_hash.h"
 #include "tests/scene/builder_fixture.h"
-#include "transport/rays.h"
+#include "transport/accelerator.h"
 
 namespace bnvpl {
 namespace {
@@ -106,13 +106,13 @@ TEST_F(BuilderLimits, LampsInTheirWallsPlaneAreInFront) {
                          "\nv -.5 -1 0.7\nv .3 -1 0.7\nv .3 1 " + z + "\nv -.5 1 " + z + "\n" +
                          faces);
       const Scene scene = load(kFilmAndCamera + "[[mesh]]\nfile = \"m.obj\"\n");
-      const RayScene rays(scene);
+      const Accelerator accel(scene);
       for (int k = 0; k < 200; ++k) {
         const Point2 p = r2Sequence(uint64_t(k), 0.5, 0.5);
         const Vec3 to{1.9f * p.x - 0.95f, 1.9f * p.y - 0.95f, 0};
         for (const float side : {1.0f, -1.0f}) {
           SurfacePoint hit;
-          ASSERT_TRUE(rays.closestHit(to + Vec3{0, 0, 5 * side}, {0, 0, -side}, hit));
+          ASSERT_TRUE(accel.closestHit(to + Vec3{0, 0, 5 * side}, {0, 0, -side}, hit));
           const bool shines = !isBlack(scene.materials[hit.material].emission);
           if (std::fabs(to.x + 0.5f) < 0.01f || std::fabs(to.x - 0.3f) < 0.01f) continue;
           EXPECT_EQ(shines, side > 0 && to.x > -0.5f && to.x < 0.3f)

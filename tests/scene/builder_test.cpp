@@ -5,7 +5,7 @@
 #include "scene/scene_builder.h"
 #include "scene/scene_hash.h"
 #include "tests/scene/builder_fixture.h"
-#include "transport/rays.h"
+#include "transport/accelerator.h"
 
 namespace bnvpl {
 namespace {

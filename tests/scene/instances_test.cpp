@@ -7,8 +7,8 @@
 #include "core/sampling.h"
 #include "scene/scene_builder.h"
 #include "tools/common/files/streams.h"
+#include "transport/accelerator.h"
 #include "transport/lights.h"
-#include "transport/rays.h"
 
 namespace bnvpl {
 namespace {
@@ -74,7 +74,7 @@ Scene tents(bool shared, double away = 0.0) {
 
 void expectSameHits(const Scene& one, const Scene& other, float tolerance,
                     Processor processor = Processor::This) {
-  const RayScene a(one, processor), b(other);
+  const Accelerator a(one, processor), b(other);
   Rng rng(streamKey(8, 1u), 0);
   int hits = 0, occluded = 0;
   for (int i = 0; i < 20000; ++i) {
@@ -130,7 +130,7 @@ TEST(Instances, AreStoredOnce) {
 
 TEST(Instances, EmitWhereTheyStand) {
   const Scene shared = tents(true), flat = tents(false);
-  const RayScene a(shared), b(flat);
+  const Accelerator a(shared), b(flat);
   const LightSet lamps(a), same(b);
   ASSERT_EQ(lamps.size(), same.size());
   EXPECT_NEAR(lamps.totalPower().x, same.totalPower().x, 1e-4f * same.totalPower().x);

@@ -31,8 +31,8 @@ TEST_F(LightGroups, EveryKindOfLightCanHaveOne) {
       "[[light]]\ntype = \"sun\"\ndirection = [0, -1, 0]\nirradiance = [1, 1, 1]\n" + group("sky") +
       "[[light]]\ntype = \"environment\"\nradiance = [1, 1, 1]\n" + group("sky"));
   EXPECT_EQ(s.lightGroups, (std::vector<std::string>{"default", "Key_1", "lamps", "sky"}));
-  const RayScene rays(s);
-  const LightSet lights(rays);
+  const Accelerator accel(s);
+  const LightSet lights(accel);
   std::vector<uint32_t> groups;
   for (size_t i = 0; i < lights.size(); ++i) groups.push_back(lights.group(i));
   EXPECT_EQ(groups, (std::vector<uint32_t>{2, 1, 0, 3, 3}));

@@ -23,10 +23,10 @@ double residentMiB() {
 void loadTimes(int times) {
   for (int i = 0; i < times; ++i) {
     const Scene scene = loadScene(fs::path(BNVPL_SCENES) / "veach-door/scene.toml");
-    const RayScene rays(scene);
-    EXPECT_GT(mean(LightSet(rays).totalPower()), 0.0f);
+    const Accelerator accel(scene);
+    EXPECT_GT(mean(LightSet(accel).totalPower()), 0.0f);
     SurfacePoint hit;
-    ASSERT_TRUE(rays.closestHit(scene.camera.position, {0.0f, -1.0f, 0.0f}, hit));
+    ASSERT_TRUE(accel.closestHit(scene.camera.position, {0.0f, -1.0f, 0.0f}, hit));
   }
 }
 

@@ -78,8 +78,8 @@ TEST(SharedScenes, VeachAjar) {
             382690u - 62u);  // as in the file, except those without an area
   EXPECT_EQ(warningsWith(scene, "62 triangles without area"), 1u);
   expectBounds(scene, {-9.6f, 0, -7.6f}, {7.4f, 3.8f, 0.6f}, 0.2f);
-  const RayScene rays(scene);
-  const LightSet lights(rays);
+  const Accelerator accel(scene);
+  const LightSet lights(accel);
   ASSERT_EQ(lights.size(), 1u);
   EXPECT_NE(lights.name(0).find("Light_emit"), std::string::npos);
   const float area = lights.power(0).x / (1000.0f * 3.14159265f);  // one-sided, radiance 1000
@@ -110,13 +110,13 @@ TEST(SharedScenes, CornellBox) {
   EXPECT_EQ(scene.triangles.size(), 36u);
   expectBounds(scene, {-1.02f, 0, -1.04f}, {1, 1.99f, 0.99f}, 0.02f);
   EXPECT_TRUE(scene.normals.empty());
-  const RayScene rays(scene);
-  const LightSet lights(rays);
+  const Accelerator accel(scene);
+  const LightSet lights(accel);
   ASSERT_EQ(lights.size(), 1u);
   EXPECT_NEAR(lights.power(0).x / lights.power(0).z, 17.0f / 4.0f, 1e-4f);
   // The area light faces down into the box: a ray from below sees its emission.
   SurfacePoint hit;
-  ASSERT_TRUE(rays.closestHit({-0.005f, 1.0f, -0.03f}, {0, 1, 0}, hit));
+  ASSERT_TRUE(accel.closestHit({-0.005f, 1.0f, -0.03f}, {0, 1, 0}, hit));
   size_t light = kNone;
   EXPECT_EQ(lights.emitted(hit, light), Vec3(17, 12, 4));
 }

@@ -28,8 +28,8 @@ class TomlLights : public SceneFiles {
   }
   // Irradiance at `at`, on a surface that faces `normal`, from the only light.
   static double irradiance(const Scene& s, Vec3 at, Vec3 normal) {
-    const RayScene rays(s);
-    const LightSet lights(rays);
+    const Accelerator accel(s);
+    const LightSet lights(accel);
     Rng rng(streamKey(3, 0u), 0);
     double sum = 0.0;
     constexpr int kSamples = 200000;
@@ -42,8 +42,8 @@ class TomlLights : public SceneFiles {
     return sum / kSamples;
   }
   static Vec3 power(const Scene& s) {
-    const RayScene rays(s);
-    return LightSet(rays).totalPower();
+    const Accelerator accel(s);
+    return LightSet(accel).totalPower();
   }
   void expectError(const std::string& keys, const std::string& part) const {
     const std::string error = loadError("[[mesh]]\nfile = \"dark.obj\"\n" + light(keys));
@@ -121,8 +121,8 @@ TEST_F(TomlLights, TheyAreObjectsByTheirNames) {
            light("type = \"point\"\nname = \"bulb\"\nposition = [0, 0, 0]\n"
                  "power = [1, 1, 1]"));
   EXPECT_EQ(s.objectNames, (std::vector<std::string>{"dark", "rectangle light 1", "key"}));
-  const RayScene rays(s);
-  const LightSet lights(rays);
+  const Accelerator accel(s);
+  const LightSet lights(accel);
   ASSERT_EQ(lights.size(), 3u);
   EXPECT_EQ(lights.name(1), "emissive material 'key'");
   EXPECT_EQ(lights.name(2), "point light 'bulb'");

@@ -1,7 +1,7 @@
 #include "core/sampling.h"
 #include "scene/affine.h"
 #include "tests/scene/scene_files.h"
-#include "transport/rays.h"
+#include "transport/accelerator.h"
 
 namespace bnvpl {
 namespace {
@@ -84,9 +84,9 @@ TEST_F(Transform, MirroredMeshKeepsOutwardFacesAndNormals) {
       EXPECT_GT(dot(scene.normals[scene.triangles[t].normal[1]], geometricNormal(scene, t)), 0.99f)
           << keys;
     }
-    const RayScene rays(scene);
+    const Accelerator accel(scene);
     SurfacePoint hit;
-    ASSERT_TRUE(rays.closestHit({5, 0.3f, 0.2f}, {-1, 0, 0}, hit));
+    ASSERT_TRUE(accel.closestHit({5, 0.3f, 0.2f}, {-1, 0, 0}, hit));
     EXPECT_TRUE(hit.front) << keys;
     EXPECT_EQ(hit.ns, Vec3(1, 0, 0)) << keys;
   }

@@ -128,7 +128,7 @@ inline void expectSameBytesInShards(const std::string& gather, const Given& more
     Resume resume;
     resume.shard = {k, k + 1, 3};
     resume.sink = &sink;
-    render(c.world.rays, c.world.lights, c.lit, options, {}, resume);
+    render(c.world.accel, c.world.lights, c.lit, options, {}, resume);
   }
   ShardSource source;
   source.record = [&](std::string_view work, uint64_t unit) -> std::optional<std::string> {
@@ -136,7 +136,7 @@ inline void expectSameBytesInShards(const std::string& gather, const Given& more
   };
   source.parts = 3;
   const Image joined = joinRendered(c.world.scene.film, options, source).image;
-  const Image whole = render(c.world.rays, c.world.lights, c.lit, options).image;
+  const Image whole = render(c.world.accel, c.world.lights, c.lit, options).image;
   for (const ImageChannel& channel : whole.channels)
     EXPECT_EQ(*joined.find(channel.name), channel.data) << channel.name;
 }

@@ -10,11 +10,11 @@ struct GatherOf {
   // Takes `options` like vpl-render; borrows the world and the VPLs. A gather that inspects the
   // film gets no points, and one that inspects the table of the VPLs gets no rows.
   GatherOf(const World& world, const VplLights& vpls, const Given& options)
-      : tree(buildLightTree(vpls, 1)), point(world.rays, vpls, tree) {
+      : tree(buildLightTree(vpls, 1)), point(world.accel, vpls, tree) {
     const Values values = resolve(renderSpec(), options);
     const ProgressFn silent;
     gather = methodNamed(gatherMethods(), values[OptionKey<std::string>{"gather"}])
-                 .make({world.rays, world.lights, lit, vpls, tree, 1,
+                 .make({world.accel, world.lights, lit, vpls, tree, 1,
                         [this] {
                           looksAtFilm = true;
                           return PrimaryPoints{};

@@ -16,9 +16,9 @@ namespace bnvpl::test {
 // A scene with its acceleration structure; the order of the members keeps references valid.
 struct World {
   explicit World(const std::string& name) : World(loadScene(fs::path(BNVPL_SCENES_DIR) / name)) {}
-  explicit World(Scene given) : scene(std::move(given)), rays(scene), lights(rays) {}
+  explicit World(Scene given) : scene(std::move(given)), accel(scene), lights(accel) {}
   Scene scene;
-  RayScene rays;
+  Accelerator accel;
   LightSet lights;
 };
 
@@ -36,18 +36,18 @@ std::string typed(Number number) {
 }
 
 inline PlaceResult placeVpls(const World& world, const Given& options) {
-  return place({world.rays, world.lights, PlaceViews(world.scene)}, resolve(placeSpec(), options));
+  return place({world.accel, world.lights, PlaceViews(world.scene)}, resolve(placeSpec(), options));
 }
 inline VplTable keepVpls(const VplTable& candidates, const Given& options) {
   return eliminate(candidates, resolve(eliminateSpec(), options)).table;
 }
 inline EstimateResult lightVpls(const World& world, const VplTable& vpls, const Given& options,
                                 const Resume& resume = {}) {
-  return estimate(vpls, world.rays, world.lights, resolve(estimateSpec(), options), {}, resume);
+  return estimate(vpls, world.accel, world.lights, resolve(estimateSpec(), options), {}, resume);
 }
 inline RenderResult renderVpls(const World& world, const VplTable& lit, const Given& options,
                                const Resume& resume = {}) {
-  return render(world.rays, world.lights, lit, resolveRender(options), {}, resume);
+  return render(world.accel, world.lights, lit, resolveRender(options), {}, resume);
 }
 // Renders without VPLs, by the path tracer or the light tracer.
 inline RenderResult renderWithout(const World& world, const std::string& integrator,

@@ -25,9 +25,9 @@ LightSpec skyLight() {
 // A floor of 400 x 400 on which a square of 2 x 2 counts: one in 40,000 of the photons of a sun.
 // Photons around it are the proxy.
 struct Plain {
-  explicit Plain(const std::vector<LightSpec>& specs) : scene(ground()), rays(scene) {
+  explicit Plain(const std::vector<LightSpec>& specs) : scene(ground()), accel(scene) {
     scene.lights = specs;
-    lights.emplace(rays);
+    lights.emplace(accel);
   }
   static Scene ground() {
     Scene scene;
@@ -39,7 +39,7 @@ struct Plain {
   // Flux that arrives within `half` of the square's middle.
   double onSquare(const PhotonStart& start, float half = 1.0f) const {
     SurfacePoint hit;
-    rays.closestHit(start.origin, start.direction, hit);
+    accel.closestHit(start.origin, start.direction, hit);
     const Vec3 p = hit.position;
     const bool there = hit.triangle != kNone && p.y < 1.0f && std::fabs(p.x - 30.0f) < half &&
                        std::fabs(p.z + 50.0f) < half;
@@ -53,7 +53,7 @@ struct Plain {
                          {});
   }
   Scene scene;
-  RayScene rays;
+  Accelerator accel;
   std::optional<LightSet> lights;
 };
 
@@ -159,8 +159,8 @@ TEST(EmissionGuide, EmittedByIsTheInverseOfEmit) {
   LightSpec textured = skyLight();
   textured.image = 0;
   scene.lights = {sunLight(), skyLight(), textured};
-  const RayScene rays(scene);
-  const LightSet lights(rays);
+  const Accelerator accel(scene);
+  const LightSet lights(accel);
   ASSERT_EQ(lights.size(), 5u);
   for (size_t light = 0; light < lights.size(); ++light) {
     for (uint64_t i = 0; i < 2000; ++i) {

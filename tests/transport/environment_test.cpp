@@ -18,7 +18,7 @@ EnvironmentImage noisySky(uint32_t width, uint32_t height) {
 
 struct Sky {
   Scene scene = floorScene();
-  std::unique_ptr<RayScene> rays;
+  std::unique_ptr<Accelerator> accel;
   std::unique_ptr<LightSet> lights;
   explicit Sky(EnvironmentImage image, float rotateDeg = 0.0f, float scale = 1.0f) {
     LightSpec s;
@@ -28,8 +28,8 @@ struct Sky {
     s.scale = scale;
     scene.environments.push_back(std::move(image));
     scene.lights.push_back(s);
-    rays = std::make_unique<RayScene>(scene);
-    lights = std::make_unique<LightSet>(*rays);
+    accel = std::make_unique<Accelerator>(scene);
+    lights = std::make_unique<LightSet>(*accel);
   }
   Vec3 look(Vec3 direction, float* density = nullptr) const {
     Vec3 seen;
@@ -136,7 +136,7 @@ TEST(Environment, PhotonsCarryThePowerOfTheImage) {
   const Vec3 arriving = meanOver(400000, [&](Rng& rng) {
     const PhotonStart s = sky.lights->emit(0, rng);
     SurfacePoint hit;
-    return sky.rays->closestHit(s.origin, s.direction, hit) && hit.material == 0 && hit.front
+    return sky.accel->closestHit(s.origin, s.direction, hit) && hit.material == 0 && hit.front
                ? s.flux
                : Vec3{};
   });

@@ -1,10 +1,10 @@
-// RayScene for Processor::Any computes its own hits in Embree's traversal.
+// Accelerator for Processor::Any computes its own hits in Embree's traversal.
 #include "core/random.h"
 #include "core/sampling.h"
 #include "scene/scene_builder.h"
 #include "tests/scene/scene_files.h"
 #include "tools/common/files/streams.h"
-#include "transport/rays.h"
+#include "transport/accelerator.h"
 
 namespace bnvpl {
 namespace {
@@ -15,7 +15,7 @@ using ExactRays = SceneFiles;
 TEST_F(ExactRays, HitWhatEmbreeHits) {
   const Scene scene = loadScene(fs::path(BNVPL_SCENES) / "test/quirks.toml");
   ASSERT_LT(scene.maskedBegin, scene.worldEnd());
-  const RayScene embree(scene), exact(scene, Processor::Any);
+  const Accelerator embree(scene), exact(scene, Processor::Any);
   const float size = scene.bounds.diagonal();
   Rng rng(streamKey(3, Stream::Plot), 0);
   int found = 0, other = 0, differ = 0;
@@ -49,13 +49,13 @@ TEST_F(ExactRays, HitWhatEmbreeHits) {
 TEST_F(ExactRays, TheFirstOfTrianglesAtOneDistanceIsHit) {
   const Scene scene =
       loadMesh(kSquareObj + "f 3 4 1 2\nf 2 3 4 1\nf 4 1 2 3\n", "newmtl paint\nKd 0.5 0.5 0.5\n");
-  const RayScene rays(scene, Processor::Any);
+  const Accelerator accel(scene, Processor::Any);
   Rng rng(streamKey(4, Stream::Plot), 0);
   for (int i = 0; i < 1000; ++i) {
     const float x = 2 * rng.next() - 1, y = 2 * rng.next() - 1;
     for (const float side : {1.0f, -1.0f}) {
       SurfacePoint hit;
-      ASSERT_TRUE(rays.closestHit({x, y, 2 * side}, {0, 0, -side}, hit));
+      ASSERT_TRUE(accel.closestHit({x, y, 2 * side}, {0, 0, -side}, hit));
       EXPECT_LT(hit.triangle, 2u) << x << " " << y;
       EXPECT_EQ(hit.distance, 2.0f);
     }
@@ -65,14 +65,14 @@ TEST_F(ExactRays, TheFirstOfTrianglesAtOneDistanceIsHit) {
 // A shadow ray is passed to Embree longer than it is; nothing beyond its end occludes it.
 TEST_F(ExactRays, EndWhereTheyEnd) {
   const Scene scene = loadMesh(kSquareObj, "newmtl paint\nKd 0.5 0.5 0.5\n");
-  const RayScene rays(scene, Processor::Any);
+  const Accelerator accel(scene, Processor::Any);
   const Vec3 from{0.3f, 0.2f, 2};
   for (const float past : {0x1p-20f, -0x1p-20f}) {
     const Vec3 to{0.3f, 0.2f, -past};
     const std::array segments{Segment{from, to}, Segment{to, from}};
     std::array<uint8_t, 2> hidden{};
-    rays.occluded(segments, hidden);
-    EXPECT_EQ(rays.occluded(from, to), past > 0) << past;
+    accel.occluded(segments, hidden);
+    EXPECT_EQ(accel.occluded(from, to), past > 0) << past;
     EXPECT_EQ(hidden[0] != 0, past > 0) << past;
     EXPECT_EQ(hidden[1] != 0, past > 0) << past;
   }

@@ -53,7 +53,7 @@ TEST(LightStrata, DrawnByTurnsDrawingAround) {
         ++skies;
       } else {
         SurfacePoint hit;
-        ASSERT_TRUE(lit.rays.closestHit(at, s.wi, hit));
+        ASSERT_TRUE(lit.accel.closestHit(at, s.wi, hit));
         back = lit.lights.drawnBy(light, hit);
         ++areas;
       }

@@ -74,7 +74,7 @@ TEST(DirectLight, EmissionTextureDarkensSamplesRaysAndPhotons) {
               Vec3(10, 5, 1) * kPi, 0.03f);
   for (const float x : {-0.5f, 0.5f}) {
     SurfacePoint hit;
-    ASSERT_TRUE(lit.rays.closestHit({x, 0.5f, 0.1f}, {0, 1, 0}, hit));
+    ASSERT_TRUE(lit.accel.closestHit({x, 0.5f, 0.1f}, {0, 1, 0}, hit));
     size_t light = 0;
     EXPECT_EQ(lit.lights.emitted(hit, light), x < 0 ? Vec3() : Vec3(10, 5, 1));
   }
@@ -185,9 +185,9 @@ TEST(DirectLight, LampSampleIsWhatARayFinds) {
         ASSERT_FALSE(lit.scene.textures.empty());  // a black point in a cell that is not black
         continue;
       }
-      EXPECT_FALSE(lit.rays.occluded(from, s.target));
+      EXPECT_FALSE(lit.accel.occluded(from, s.target));
       SurfacePoint hit;
-      ASSERT_TRUE(lit.rays.closestHit(from, s.wi, hit));
+      ASSERT_TRUE(lit.accel.closestHit(from, s.wi, hit));
       size_t light = kNone;
       const Vec3 radiance = lit.lights.emitted(hit, light);
       ASSERT_EQ(light, 0u);
@@ -205,9 +205,9 @@ TEST(DirectLight, OnlyTheLitSideEmits) {
   const Lit lit(lampScene(false));
   SurfacePoint hit;
   size_t light = 0;
-  ASSERT_TRUE(lit.rays.closestHit({0, 3, 0}, {0, -1, 0}, hit));
+  ASSERT_TRUE(lit.accel.closestHit({0, 3, 0}, {0, -1, 0}, hit));
   EXPECT_EQ(lit.lights.emitted(hit, light), Vec3());
-  ASSERT_TRUE(lit.rays.closestHit({0, 1, 0}, {0, 1, 0}, hit));
+  ASSERT_TRUE(lit.accel.closestHit({0, 1, 0}, {0, 1, 0}, hit));
   EXPECT_EQ(lit.lights.emitted(hit, light), Vec3(10, 5, 1));
 }
 

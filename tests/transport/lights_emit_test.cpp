@@ -52,8 +52,8 @@ TEST(Emission, MeanFluxIsThePower) {
   for (const EmitCase& c : cases()) {
     Scene scene = floorScene();
     scene.lights.push_back(c.spec);
-    const RayScene rays(scene);
-    const LightSet lights(rays);
+    const Accelerator accel(scene);
+    const LightSet lights(accel);
     const Vec3 flux = meanOver(200000, [&](Rng& rng) {
       const PhotonStart s = lights.emit(0, rng);
       EXPECT_NEAR(length(s.direction), 1.0f, 1e-5f);
@@ -72,11 +72,11 @@ TEST(Emission, LightsThatAreTooStrongForVplsAreRefused) {
       Scene scene = floorScene();
       if (strong) c.spec.emission = Vec3(1e25f);
       scene.lights.push_back(c.spec);
-      const RayScene rays(scene);
+      const Accelerator accel(scene);
       if (strong) {
-        EXPECT_THROW(LightSet(rays).requireSquares(), InputError) << c.name;
+        EXPECT_THROW(LightSet(accel).requireSquares(), InputError) << c.name;
       } else {
-        EXPECT_NO_THROW(LightSet(rays).requireSquares()) << c.name;
+        EXPECT_NO_THROW(LightSet(accel).requireSquares()) << c.name;
       }
     }
   }
@@ -88,8 +88,8 @@ TEST(Emission, LampsEmitUniformlyFromTheirLitSides) {
     addSquare(scene, {-1, 1, -1}, {2, 0, 0}, {0, 0, 3},
               lamp({10, 5, 1}, twoSided));  // 2 x 3, faces -y
     finishScene(scene);
-    const RayScene rays(scene);
-    const LightSet lights(rays);
+    const Accelerator accel(scene);
+    const LightSet lights(accel);
     const Vec3 power = Vec3(10, 5, 1) * (kPi * 6.0f * (twoSided ? 2.0f : 1.0f));
     expectClose(lights.power(0), power, 1e-5f);
     double cosine = 0.0, down = 0.0, half = 0.0;
@@ -113,13 +113,13 @@ TEST(Emission, LampsEmitUniformlyFromTheirLitSides) {
 void expectFloorAgrees(const LightSpec& spec, const std::string& name, float tolerance) {
   Scene scene = floorScene();
   scene.lights.push_back(spec);
-  const RayScene rays(scene);
-  const LightSet lights(rays);
+  const Accelerator accel(scene);
+  const LightSet lights(accel);
   const Vec3 arriving = meanOver(400000, [&](Rng& rng) {
     const PhotonStart s = lights.emit(0, rng);
     SurfacePoint hit;
     const bool onFloor =
-        rays.closestHit(s.origin, s.direction, hit) && hit.material == 0 && hit.front;
+        accel.closestHit(s.origin, s.direction, hit) && hit.material == 0 && hit.front;
     return onFloor ? s.flux : Vec3{};
   });
   const Vec3 direct = meanOver(400000, [&](Rng& rng) {
@@ -139,12 +139,12 @@ TEST(Emission, PhotonsLightTheFloorAsDirectLightDoes) {
 TEST(Emission, SunOnTheFloorIsIrradianceTimesCosine) {
   Scene scene = floorScene();
   scene.lights.push_back(sun(0));
-  const RayScene rays(scene);
-  const LightSet lights(rays);
+  const Accelerator accel(scene);
+  const LightSet lights(accel);
   const Vec3 arriving = meanOver(200000, [&](Rng& rng) {
     const PhotonStart s = lights.emit(0, rng);
     SurfacePoint hit;
-    return rays.closestHit(s.origin, s.direction, hit) && hit.material == 0 ? s.flux : Vec3{};
+    return accel.closestHit(s.origin, s.direction, hit) && hit.material == 0 ? s.flux : Vec3{};
   });
   expectClose(arriving, Vec3(5, 4, 3) * (24.0f * -scene.lights[0].direction.y), 0.01f);
 }
@@ -156,8 +156,8 @@ TEST(Emission, PicksFollowPower) {
     s.emission = Vec3(intensity);
     scene.lights.push_back(s);
   }
-  const RayScene rays(scene);
-  const LightSet lights(rays);
+  const Accelerator accel(scene);
+  const LightSet lights(accel);
   ASSERT_EQ(lights.size(), 3u);
   EXPECT_NEAR(lights.pickProbability(0), 0.25f, 1e-6f);
   EXPECT_EQ(lights.pickProbability(1), 0.0f);
@@ -184,8 +184,8 @@ TEST(Emission, NarrowSpotKeepsItsPower) {
     s.falloffRad = 0.5f * s.coneRad;
     Scene scene = floorScene();
     scene.lights.push_back(s);
-    const RayScene rays(scene);
-    const LightSet lights(rays);
+    const Accelerator accel(scene);
+    const LightSet lights(accel);
     const Vec3 flux = meanOver(200000, [&](Rng& rng) { return lights.emit(0, rng).flux; });
     expectClose(flux, lights.power(0), 0.01f, std::to_string(coneDeg) + " degrees");
   }

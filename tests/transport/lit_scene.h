@@ -1,16 +1,16 @@
 // A scene with what its light is sampled by.
 #pragma once
 
+#include "transport/accelerator.h"
 #include "transport/lights.h"
-#include "transport/rays.h"
 
 namespace bnvpl {
 
 struct Lit {
   Scene scene;
-  RayScene rays;
+  Accelerator accel;
   LightSet lights;
-  explicit Lit(Scene s) : scene(std::move(s)), rays(scene), lights(rays) {}
+  explicit Lit(Scene s) : scene(std::move(s)), accel(scene), lights(accel) {}
 };
 
 }  // namespace bnvpl

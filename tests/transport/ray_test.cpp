@@ -2,7 +2,7 @@
 #include "core/sampling.h"
 #include "tests/scene/scene_files.h"
 #include "tools/common/files/streams.h"
-#include "transport/rays.h"
+#include "transport/accelerator.h"
 
 namespace bnvpl {
 namespace {
@@ -12,10 +12,10 @@ const std::string kPaint = "newmtl paint\nKd 0.5 0.5 0.5\n";
 
 TEST_F(Rays, HitsAreDescribedFromTheSideOfTheRay) {
   const Scene scene = loadMesh(kSquareObj, kPaint);
-  const RayScene rays(scene);
+  const Accelerator accel(scene);
   for (const float side : {1.0f, -1.0f}) {
     SurfacePoint hit;
-    ASSERT_TRUE(rays.closestHit({0.5f, -0.25f, 2 * side}, {0, 0, -side}, hit));
+    ASSERT_TRUE(accel.closestHit({0.5f, -0.25f, 2 * side}, {0, 0, -side}, hit));
     EXPECT_LT(length(hit.position - Vec3(0.5f, -0.25f, 0)), 1e-6f);
     EXPECT_EQ(hit.ng, Vec3(0, 0, side));
     EXPECT_EQ(hit.ns, Vec3(0, 0, side));
@@ -26,17 +26,17 @@ TEST_F(Rays, HitsAreDescribedFromTheSideOfTheRay) {
     EXPECT_NEAR(hit.distance, 2.0f, 1e-6f);
   }
   SurfacePoint hit;
-  EXPECT_FALSE(rays.closestHit({0, 0, 2}, {0, 0, 1}, hit));
-  EXPECT_FALSE(rays.closestHit({1.5f, 0, 2}, {0, 0, -1}, hit));
+  EXPECT_FALSE(accel.closestHit({0, 0, 2}, {0, 0, 1}, hit));
+  EXPECT_FALSE(accel.closestHit({1.5f, 0, 2}, {0, 0, -1}, hit));
 }
 
 // With normals, texture coordinates and a texture, batches prefetch all kinds of data.
 TEST_F(Rays, ManyAtOnceAreWhatTheyAreOneByOne) {
   const Scene scene = loadScene(fs::path(BNVPL_SCENES) / "test/quirks.toml");
-  const RayScene rays(scene);
+  const Accelerator accel(scene);
   Rng rng(streamKey(9, Stream::Plot), 0);
-  std::array<Ray, RayScene::kBatch> some;
-  std::array<SurfacePoint, RayScene::kBatch> hits;
+  std::array<Ray, Accelerator::kBatch> some;
+  std::array<SurfacePoint, Accelerator::kBatch> hits;
   size_t found = 0, left = 0;
   for (size_t size = 0; size <= some.size(); ++size) {
     for (size_t i = 0; i < size; ++i) {
@@ -44,10 +44,10 @@ TEST_F(Rays, ManyAtOnceAreWhatTheyAreOneByOne) {
       const Vec3 at{rng.next(), rng.next(), rng.next()};
       some[i] = {scene.bounds.lower + scene.bounds.extent() * at, sampleSphere(u, v)};
     }
-    rays.closestHits({some.data(), size}, hits);
+    accel.closestHits({some.data(), size}, hits);
     for (size_t i = 0; i < size; ++i) {
       SurfacePoint alone;
-      if (!rays.closestHit(some[i].origin, some[i].direction, alone)) {
+      if (!accel.closestHit(some[i].origin, some[i].direction, alone)) {
         EXPECT_EQ(hits[i].triangle, kNone);
         ++left;
         continue;
@@ -73,7 +73,7 @@ TEST_F(Rays, NoTextureCoordinatesAreNaN) {
   const Scene scene =
       loadMesh("mtllib square.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl paint\nf 1 2 3\n", kPaint);
   SurfacePoint hit;
-  ASSERT_TRUE(RayScene(scene).closestHit({0.2f, 0.2f, 1}, {0, 0, -1}, hit));
+  ASSERT_TRUE(Accelerator(scene).closestHit({0.2f, 0.2f, 1}, {0, 0, -1}, hit));
   EXPECT_TRUE(std::isnan(hit.u) && std::isnan(hit.v));
 }
 
@@ -82,13 +82,13 @@ TEST_F(Rays, ShadingNormalIsInterpolatedAndFacesTheRay) {
       "mtllib square.mtl\nusemtl paint\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvn 1 0 1\nvn 0 0 1\nf 1//1 2//2 "
       "3//2\n",
       kPaint);
-  const RayScene rays(scene);
+  const Accelerator accel(scene);
   SurfacePoint hit;
-  ASSERT_TRUE(rays.closestHit({0.1f, 0.1f, 1}, {0, 0, -1}, hit));
+  ASSERT_TRUE(accel.closestHit({0.1f, 0.1f, 1}, {0, 0, -1}, hit));
   EXPECT_GT(hit.ns.x, 0.1f);
   EXPECT_NEAR(length(hit.ns), 1.0f, 1e-6f);
   EXPECT_EQ(hit.ng, Vec3(0, 0, 1));
-  ASSERT_TRUE(rays.closestHit({0.1f, 0.1f, -1}, {0, 0, 1}, hit));
+  ASSERT_TRUE(accel.closestHit({0.1f, 0.1f, -1}, {0, 0, 1}, hit));
   EXPECT_LT(hit.ns.z, 0.0f);
   EXPECT_EQ(hit.ng, Vec3(0, 0, -1));
 }
@@ -107,21 +107,21 @@ TEST_F(Rays, LiftedPointsStayOnTheirSide) {
         "v -1 -1 1\nv 1 -1 1\nv -1 1 1\nv 1 1 1\n"
         "f 1 3 7 5\nf 2 6 8 4\nf 1 5 6 2\nf 3 4 8 7\nf 1 2 4 3\nf 5 7 8 6\n",
         kPaint, keys);
-    const RayScene rays(scene);
+    const Accelerator accel(scene);
     Rng rng(1, 0);
     const Vec3 center = scene.bounds.center(), start = normalize({0.3f, 0.5f, 0.7f});
     Vec3 origin = center, direction = start;
     int hidden = 0, escaped = 0;
     for (int i = 0; i < 20000; ++i) {
       SurfacePoint hit;
-      if (!rays.closestHit(origin, direction, hit)) {
+      if (!accel.closestHit(origin, direction, hit)) {
         ++escaped;
         origin = center;
         direction = start;
         continue;
       }
-      origin = rays.offsetOrigin(hit.position, hit.ng);
-      hidden += rays.occluded(origin, center) ? 1 : 0;
+      origin = accel.offsetOrigin(hit.position, hit.ng);
+      hidden += accel.occluded(origin, center) ? 1 : 0;
       const float u = rng.next(), v = rng.next();
       direction = Basis(hit.ng).toWorld(sampleCosineHemisphere(u, v));
     }
@@ -132,18 +132,18 @@ TEST_F(Rays, LiftedPointsStayOnTheirSide) {
 
 TEST_F(Rays, OcclusionIsStrictlyBetween) {
   const Scene scene = loadMesh(kSquareObj, kPaint);
-  const RayScene rays(scene);
-  EXPECT_TRUE(rays.occluded({0, 0.1f, 1}, {0, 0.1f, -1}));
-  EXPECT_FALSE(rays.occluded({0, 0.1f, 1}, {0, 0.1f, 0.001f}));
-  EXPECT_FALSE(rays.occluded({0, 0.1f, -0.001f}, {0, 0.1f, -1}));
-  EXPECT_FALSE(rays.occluded({0, 0.1f, 1}, rays.offsetOrigin({0, 0.1f, 0}, {0, 0, 1})));
-  EXPECT_TRUE(rays.occluded({0, 0.1f, 1}, rays.offsetOrigin({0, 0.1f, 0}, {0, 0, -1})));
+  const Accelerator accel(scene);
+  EXPECT_TRUE(accel.occluded({0, 0.1f, 1}, {0, 0.1f, -1}));
+  EXPECT_FALSE(accel.occluded({0, 0.1f, 1}, {0, 0.1f, 0.001f}));
+  EXPECT_FALSE(accel.occluded({0, 0.1f, -0.001f}, {0, 0.1f, -1}));
+  EXPECT_FALSE(accel.occluded({0, 0.1f, 1}, accel.offsetOrigin({0, 0.1f, 0}, {0, 0, 1})));
+  EXPECT_TRUE(accel.occluded({0, 0.1f, 1}, accel.offsetOrigin({0, 0.1f, 0}, {0, 0, -1})));
 }
 
 // A room with a box and any number of rays, close together and scattered.
 TEST_F(Rays, OcclusionOfManyIsWhatItIsOneByOne) {
   const Scene scene = loadScene(fs::path(BNVPL_SCENES) / "cornell/scene.toml");
-  const RayScene rays(scene);
+  const Accelerator accel(scene);
   Rng rng(streamKey(10, Stream::Plot), 0);
   const auto somewhere = [&](float share, Vec3 about) {
     const Vec3 at{rng.next() - 0.5f, rng.next() - 0.5f, rng.next() - 0.5f};
@@ -160,9 +160,9 @@ TEST_F(Rays, OcclusionOfManyIsWhatItIsOneByOne) {
                           somewhere(share, size % 2 == 0 ? center : to)});
     }
     std::vector<uint8_t> hidden(size, 7);
-    rays.occluded(segments, hidden);
+    accel.occluded(segments, hidden);
     for (size_t i = 0; i < size; ++i) {
-      EXPECT_EQ(hidden[i], rays.occluded(segments[i].from, segments[i].to));
+      EXPECT_EQ(hidden[i], accel.occluded(segments[i].from, segments[i].to));
       ++seen[hidden[i] & 1u];
     }
   }

@@ -23,10 +23,10 @@ Material mapped(uint32_t Relief::*map, float strength = 1.0f) {
   return m;
 }
 SurfacePoint hitFrom(const Scene& scene, Vec3 from) {
-  const RayScene rays(scene);
+  const Accelerator accel(scene);
   SurfacePoint hit;
   const Vec3 to{0.3f, 0.6f, 0};
-  EXPECT_TRUE(rays.closestHit(from, normalize(to - from), hit));
+  EXPECT_TRUE(accel.closestHit(from, normalize(to - from), hit));
   EXPECT_EQ(hit.material, 0u);
   return hit;
 }
@@ -123,9 +123,9 @@ TEST(Relief, OpacityTextureCutsAway) {
     Scene scene = square(m);
     scene.expressions.push_back(constantExpression(Vec3(0.3f)));
     scene.maskedBegin = 0;
-    const RayScene rays(scene);
+    const Accelerator accel(scene);
     SurfacePoint hit;
-    EXPECT_EQ(rays.closestHit({0.3f, 0.6f, 2}, {0, 0, -1}, hit), cutoff < 0.3f);
+    EXPECT_EQ(accel.closestHit({0.3f, 0.6f, 2}, {0, 0, -1}, hit), cutoff < 0.3f);
   }
 }
 

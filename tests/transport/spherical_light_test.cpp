@@ -68,7 +68,7 @@ TEST(SphericalLight, OfDiffuseSurfacesIsTheIntegral) {
     // What a horizon cuts has few samples: its mean over keys counts.
     double mean = 0.0;
     for (uint64_t key = 0; key < 1000; ++key)
-      mean += double{sphericalTransfer(vpl, floor.bsdf, key).x} / 1000;
+      mean += double{sphericalTransfer(vpl, floor.bsdf, key).value.x} / 1000;
     EXPECT_NEAR(sampled.x, expected.x, scale);
     EXPECT_NEAR(mean, expected.x, 4.0f * scale);
   }
@@ -78,7 +78,9 @@ TEST(SphericalLight, OfDiffuseSurfacesIsTheIntegral) {
 TEST(SphericalLight, IsClosedWhereNoHorizonCutsIt) {
   const Receiver floor(lambert(Vec3(0.5f)));
   const auto differs = [&](const SphericalVpl& vpl) {
-    return sphericalTransfer(vpl, floor.bsdf, 1).x != sphericalTransfer(vpl, floor.bsdf, 2).x;
+    const SphericalTransfer one = sphericalTransfer(vpl, floor.bsdf, 1);
+    EXPECT_EQ(one.sampled, one.value.x != sphericalTransfer(vpl, floor.bsdf, 2).value.x);
+    return one.sampled;
   };
   const Vec3 down{0, 0, -1};
   EXPECT_FALSE(differs({{0.5f, 0, 1}, down, 0.1f}));
@@ -94,7 +96,8 @@ TEST(SphericalLight, FromAfarIsAPoint) {
   const float point = 0.5f / kPi * (toCentre.z / d) * (-dot(normal, toCentre) / d) / d2;
   double before = 0.0;
   for (const float radius : {0.2f, 0.1f, 0.05f}) {
-    const float light = sphericalTransfer({toCentre, normal, radius * radius}, floor.bsdf, 1).x;
+    const float light =
+        sphericalTransfer({toCentre, normal, radius * radius}, floor.bsdf, 1).value.x;
     const double off = std::fabs(double{light} / double{point} - 1.0);
     if (before > 0.0) {
       EXPECT_NEAR(off / before, 0.25, 0.02);
@@ -114,7 +117,7 @@ TEST(SphericalLight, OfGlossySurfacesIsTheIntegral) {
       EXPECT_NEAR(sampled.x, expected.x, 4e-3f * expected.x + 2e-4f);
       double mean = 0.0;
       for (uint64_t key = 0; key < 1000; ++key)
-        mean += double{sphericalTransfer(vpl, metal.bsdf, key).x} / 1000;
+        mean += double{sphericalTransfer(vpl, metal.bsdf, key).value.x} / 1000;
       EXPECT_NEAR(mean, expected.x, 0.04f * expected.x + 1e-3f);
     }
   }
@@ -128,7 +131,7 @@ TEST(SphericalLight, HasNoSpikes) {
   EXPECT_GT(metal.bsdf.eval(LobeGroup::Rough, {0, 0, 1}).x / radius2, 2.5f * most);
   for (float d = 1.0f; d > 1e-4f; d *= 0.5f) {
     for (uint64_t key = 0; key < 50; ++key) {
-      const Vec3 light = sphericalTransfer({{0, 0, d}, {0, 0, -1}, radius2}, metal.bsdf, key);
+      const Vec3 light = sphericalTransfer({{0, 0, d}, {0, 0, -1}, radius2}, metal.bsdf, key).value;
       EXPECT_LT(light.x, 1.2f * most);
     }
   }

@@ -9,11 +9,11 @@ constexpr double kBytesPerRow = 3 * sizeof(Vec3) + sizeof(uint32_t);
 }  // namespace
 
 // Takes evenly spaced candidates and keeps the same share of them: the time is in proportion.
-Cost costOfEliminating(const VplTable& candidates, const Values& options, const RayScene* rays,
+Cost costOfEliminating(const VplTable& candidates, const Values& options, const Accelerator* accel,
                        const LightSet* lights, const ProgressFn& progress) {
   constexpr uint64_t kFirst = 1 << 14, kFewPoints = 400;
   if (candidates.size() < options[kEliminateCountOption])
-    eliminate(candidates, options, rays, lights);  // refuses
+    eliminate(candidates, options, accel, lights);  // refuses
   // Each candidate is judged by all of these points.
   const uint64_t points = options.has(kCameraPointsKey) ? options[kCameraPointsKey] : 0,
                  judges = std::min(points, kFewPoints);
@@ -25,7 +25,7 @@ Cost costOfEliminating(const VplTable& candidates, const Values& options, const 
     some.set(kEliminateCountOption,
              std::max<uint64_t>(1, options[kEliminateCountOption] * count / candidates.size()));
     if (points > 0) some.set(kCameraPointsKey, judges);
-    eliminate(keepRows(candidates, rows), some, rays, lights, progress);
+    eliminate(keepRows(candidates, rows), some, accel, lights, progress);
   };
   Cost cost = costOfRows(candidates.size(), kFirst, part,
                          [](uint64_t rows) { return static_cast<double>(rows); });

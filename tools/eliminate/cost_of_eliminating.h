@@ -7,7 +7,7 @@
 namespace bnvpl {
 
 // What eliminate() will take, found by eliminating some of the candidates.
-Cost costOfEliminating(const VplTable& candidates, const Values& options, const RayScene* rays,
+Cost costOfEliminating(const VplTable& candidates, const Values& options, const Accelerator* accel,
                        const LightSet* lights, const ProgressFn& progress);
 
 }  // namespace bnvpl

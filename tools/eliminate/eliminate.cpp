@@ -40,15 +40,16 @@ const EliminateMethod& eliminateMethod(const Values& options) {
   return methodNamed(eliminateMethods(), options[kMethodSlot]);
 }
 
-EliminateResult eliminate(const VplTable& candidates, const Values& options, const RayScene* rays,
-                          const LightSet* lights, const ProgressFn& progress) {
+EliminateResult eliminate(const VplTable& candidates, const Values& options,
+                          const Accelerator* accel, const LightSet* lights,
+                          const ProgressFn& progress) {
   const EliminateMethod& method = eliminateMethod(options);
-  if (method.needsScene && !(rays && lights)) {
+  if (method.needsScene && !(accel && lights)) {
     throw UsageError("--method " + std::string(method.name) +
                      " needs the scene; add --scene SCENE");
   }
   requireEnough(candidates.size(), options[kEliminateCountOption]);
-  const Kept kept = method.make({candidates, rays, lights, progress}, options);
+  const Kept kept = method.make({candidates, accel, lights, progress}, options);
   EliminateResult result{keepRows(candidates, kept.rows), kept.rMax, kept.area};
   VplTable& table = result.table;
   if (table.stage == VplStage::Candidates) table.stage = VplStage::Eliminated;

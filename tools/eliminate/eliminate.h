@@ -7,8 +7,8 @@
 #include "core/progress.h"
 #include "formats/vpl/vpl_table.h"
 #include "tools/common/stage/method.h"
+#include "transport/accelerator.h"
 #include "transport/lights.h"
-#include "transport/rays.h"
 
 namespace bnvpl {
 
@@ -30,7 +30,7 @@ struct Kept {
 struct EliminateInputs {
   const VplTable& candidates;
   // May be null unless the method needs the scene.
-  const RayScene* rays = nullptr;
+  const Accelerator* accel = nullptr;
   const LightSet* lights = nullptr;
   const ProgressFn& progress;
 };
@@ -57,7 +57,7 @@ struct EliminateResult {
 // length. A pure function: the number of threads does not change a byte. Throws InputError if count
 // is above the number of candidates, and UsageError if the method needs a scene and there is none.
 EliminateResult eliminate(const VplTable& candidates, const Values& options,
-                          const RayScene* rays = nullptr, const LightSet* lights = nullptr,
+                          const Accelerator* accel = nullptr, const LightSet* lights = nullptr,
                           const ProgressFn& progress = {});
 
 }  // namespace bnvpl

@@ -18,11 +18,11 @@ constexpr double kBytesPerCandidate = 120;  // measured: 140 to 150
 // The scene, for methods that need it.
 struct World {
   World(const SceneOptions& options, Processor processor, const fs::path& input, uint64_t hash)
-      : scene(loadSceneFor(options, Warnings::Hold)), rays(scene, processor), lights(rays) {
+      : scene(loadSceneFor(options, Warnings::Hold)), accel(scene, processor), lights(accel) {
     requireSameScene(input, hash, scene, "name the scene that it was placed in");
   }
   Scene scene;
-  RayScene rays;
+  Accelerator accel;
   LightSet lights;
 };
 
@@ -47,11 +47,11 @@ int runEliminate(const StageRequest& request, const fs::path& input, const ToolO
   std::optional<World> world;
   if (!request.scene.file.empty())
     world.emplace(request.scene, tool.processor, input, candidates.sceneHash);
-  const RayScene* rays = world ? &world->rays : nullptr;
+  const Accelerator* accel = world ? &world->accel : nullptr;
   const LightSet* lights = world ? &world->lights : nullptr;
   if (run.estimating()) {
     return run.tell("candidates,", [&](const ProgressFn& progress) {
-      return costOfEliminating(candidates, options, rays, lights, progress);
+      return costOfEliminating(candidates, options, accel, lights, progress);
     });
   }
   std::vector<fs::path> read = world ? world->scene.files : std::vector<fs::path>{};
@@ -64,7 +64,7 @@ int runEliminate(const StageRequest& request, const fs::path& input, const ToolO
       stageRecord("vpl-eliminate", recordOf(eliminateSpec(), options), inputs, tool.processor);
   if (world) record["view"] = viewRecord(world->scene);
   const auto whole = [&](const StageTask& task) {
-    EliminateResult kept = eliminate(candidates, options, rays, lights, task.progress);
+    EliminateResult kept = eliminate(candidates, options, accel, lights, task.progress);
     kept.table.provenance = extendProvenance(candidates.provenance, record);
     writeVpl(task.files.add(request.output), kept.table);
     reportEliminated(kept, candidates.size(), task.summary);

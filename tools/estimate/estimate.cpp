@@ -26,10 +26,10 @@ Work estimateWork(const VplTable& vpls, const Values& options) {
   return methodNamed(estimateMethods(), options[kMethodSlot]).work(vpls, options);
 }
 
-EstimateResult estimate(const VplTable& vpls, const RayScene& rays, const LightSet& lights,
+EstimateResult estimate(const VplTable& vpls, const Accelerator& accel, const LightSet& lights,
                         const Values& options, const ProgressFn& progress, const Resume& resume) {
   return methodNamed(estimateMethods(), options[kMethodSlot])
-      .make({vpls, rays, lights, progress, resume}, options);
+      .make({vpls, accel, lights, progress, resume}, options);
 }
 
 }  // namespace bnvpl

@@ -8,9 +8,9 @@
 #include "core/resume.h"
 #include "formats/vpl/vpl_table.h"
 #include "tools/common/stage/method.h"
+#include "transport/accelerator.h"
 #include "transport/emission_guide.h"
 #include "transport/lights.h"
-#include "transport/rays.h"
 
 namespace bnvpl {
 
@@ -37,7 +37,7 @@ struct EstimateResult {
 
 struct EstimateInputs {
   const VplTable& vpls;  // its stage is Eliminated
-  const RayScene& rays;
+  const Accelerator& accel;
   const LightSet& lights;
   const ProgressFn& progress;  // counts units of the method's Work
   const Resume& resume;
@@ -63,7 +63,7 @@ Work estimateWork(const VplTable& vpls, const Values& options);
 
 // A pure function: neither threads nor interruptions change a bit. Throws InputError if no light
 // has power.
-EstimateResult estimate(const VplTable& vpls, const RayScene& rays, const LightSet& lights,
+EstimateResult estimate(const VplTable& vpls, const Accelerator& accel, const LightSet& lights,
                         const Values& options, const ProgressFn& progress = {},
                         const Resume& resume = {});
 

@@ -30,11 +30,11 @@ int runEstimate(const StageRequest& request, const fs::path& input, const ToolOp
   run.filesReady(scene.files);
   requireSameScene(input, vpls.sceneHash, scene, "rerun vpl-place and vpl-eliminate on this scene");
   requireRadiiWithin(input, vpls.radius, scene);
-  const RayScene rays(scene, tool.processor);
-  const LightSet lights(rays);
+  const Accelerator accel(scene, tool.processor);
+  const LightSet lights(accel);
   const Work work = estimateWork(vpls, options);
   const auto result = [&](const ProgressFn& progress, const Resume& resume) {
-    return estimate(vpls, rays, lights, options, progress, resume);
+    return estimate(vpls, accel, lights, options, progress, resume);
   };
   if (run.estimating()) {
     return run.tell(std::string(work.unit), [&](const ProgressFn& progress) {

@@ -22,7 +22,7 @@ std::vector<double> weightsByFlux(const EstimateInputs& in, const PhotonScatter&
                                   const PhotonRun& run) {
   const auto phase = in.progress.before("flux pilot, photons", run.shares.total());
   const PhotonSums sums =
-      tracePhotons({in.vpls, in.rays, in.lights, in.progress, {}}, run, scatterToOneInSight);
+      tracePhotons({in.vpls, in.accel, in.lights, in.progress, {}}, run, scatterToOneInSight);
   std::vector<double> weights(in.vpls.size());
   double mean = 0.0;
   for (size_t i = 0; i < weights.size(); ++i) {
@@ -54,7 +54,7 @@ LearnedEmission learnPhotonEmission(const EstimateInputs& in, const Values& opti
         double squares = 0.0;
         Rng choice = rng;  // which of several VPLs gets the light
         followPhoton(
-            in.rays, PhotonWalk(start, maxBounces, rng), [&](const Bsdf& bsdf, Vec3 flux, bool) {
+            in.accel, PhotonWalk(start, maxBounces, rng), [&](const Bsdf& bsdf, Vec3 flux, bool) {
               const SurfacePoint& hit = bsdf.point();
               const auto found =
                   coverage.pick(hit.position, hit.ng, coverage.lookUp(hit.position), choice);

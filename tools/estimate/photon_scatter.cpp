@@ -24,8 +24,8 @@ constexpr uint64_t rangesOf(uint64_t photons) {
 // Photons that advance together, one ray each per round, which hides the latency of memory.
 class PhotonBatch {
  public:
-  PhotonBatch(const RayScene& rays, const PhotonScatter& scatter, const ScatterRule& rule)
-      : rays_(rays),
+  PhotonBatch(const Accelerator& accel, const PhotonScatter& scatter, const ScatterRule& rule)
+      : accel_(accel),
         scatter_(scatter),
         rule_(rule),
         photons_(kSize),
@@ -57,7 +57,7 @@ class PhotonBatch {
       }
       intersect(size);
       for (size_t i = 0; i < size; ++i) {
-        photons_[i].advance(rays_, hits_[i], [&](const Bsdf& bsdf, Vec3 flux, bool firstBounce) {
+        photons_[i].advance(accel_, hits_[i], [&](const Bsdf& bsdf, Vec3 flux, bool firstBounce) {
           const Vec3 leaving = flux * bsdf.roughAlbedo();
           ++sums.hits;
           scatter_.tally(sums, kReflected, leaving);
@@ -70,7 +70,7 @@ class PhotonBatch {
   }
 
  private:
-  static constexpr size_t kSize = RayScene::kBatch;
+  static constexpr size_t kSize = Accelerator::kBatch;
 
   template <typename Start>
   bool startAt(size_t i, const Start& start) {
@@ -81,7 +81,7 @@ class PhotonBatch {
   }
   // Finds the hits of the first `size` photons, and the VPLs near them.
   void intersect(size_t size) {
-    rays_.closestHits({next_.data(), size}, hits_);
+    accel_.closestHits({next_.data(), size}, hits_);
     scatter_.coverage().lookUp(std::span(std::as_const(hits_)).first(size), near_);
   }
   void finish(const PhotonWalk& photon, PhotonSums& sums) const {
@@ -92,7 +92,7 @@ class PhotonBatch {
     sums.nonFinite += fate.finite ? 0 : 1;
   }
 
-  const RayScene& rays_;
+  const Accelerator& accel_;
   const PhotonScatter& scatter_;
   const ScatterRule& rule_;
   // One entry per photon: its walk, whether rays can hit its light, its light group, its next ray,
@@ -200,7 +200,7 @@ PhotonSums tracePhotons(const EstimateInputs& in, const PhotonRun& run, const Sc
   };
   tbb::enumerable_thread_specific<PhotonSums> perThread(fresh);
   const auto trace = [&](uint64_t begin, uint64_t end, PhotonSums& sums) {
-    PhotonBatch batch(in.rays, run.scatter, rule);
+    PhotonBatch batch(in.accel, run.scatter, rule);
     uint64_t photon = begin;
     batch.follow(
         [&](PhotonWalk& walk, bool& hittable, uint32_t& group) {
@@ -268,12 +268,12 @@ void scatterToOneInSight(const PhotonScatter& scatter, const PhotonHit& hit, Rng
 
 PhotonScatter::PhotonScatter(const EstimateInputs& in, float radius, uint64_t photons)
     : radius_(radius),
-      groups_(in.rays.scene().lightGroupCount()),
+      groups_(in.accel.scene().lightGroupCount()),
       photonPower_(double{mean(in.lights.totalPower())} / static_cast<double>(photons)),
       fixed_(photonPower_, photons),
       perPhotonPower_(1.0 / photonPower_),
       squareUnit_(std::ldexp(1.0, -std::min(36, 54 - static_cast<int>(std::bit_width(photons))))),
-      coverage_(in.vpls.position, in.vpls.normal, reachOf(in.vpls, radius), in.rays) {}
+      coverage_(in.vpls.position, in.vpls.normal, reachOf(in.vpls, radius), in.accel) {}
 
 void PhotonScatter::deposit(uint32_t vpl, const PhotonHit& hit, Vec3 flux, PhotonSums& sums) const {
   VplSum& s = sums.vpl[vpl];

@@ -61,14 +61,14 @@ double VplPaths::add(const SurfacePoint& hit, float area, Rng& rng, PathSums& r,
   const LeavingGroups sinks =
       groups_ > 0 ? LeavingGroups{{&groups[0]}, {&groups[groups_]}} : LeavingGroups{};
   const auto addPath = [&](const Bsdf& bsdf) {
-    r.rays += 2 * addLeavingLight(in_.rays, in_.lights, bsdf, weight, length_,
+    r.rays += 2 * addLeavingLight(in_.accel, in_.lights, bsdf, weight, length_,
                                   settings_.spatialLights, rng, first, later, sinks);
   };
   // Exitance is the integral of the cosine times radiance over outgoing directions. Where the
   // albedo is constant, it is that of a diffuse surface of this albedo, as it is for photons. The
   // albedo of layered materials depends on the incident direction, so wo is sampled with a
   // cosine-weighted density.
-  const Scene& scene = in_.rays.scene();
+  const Scene& scene = in_.accel.scene();
   if (const Bsdf bsdf(scene, hit); bsdf.albedoIsConstant()) {
     const Bsdf diffuse(hit, bsdf.roughAlbedo());
     for (uint64_t j = 0; j < settings_.paths; ++j) addPath(diffuse);
@@ -101,7 +101,7 @@ std::unique_ptr<const SpatialLightSampler> makeSpatialLightSampler(const Estimat
                                                                    uint64_t seed) {
   if (in.resume.source) return nullptr;
   return std::make_unique<const SpatialLightSampler>(
-      in.rays, in.lights, in.vpls.position, in.vpls.normal, in.vpls.radius,
+      in.accel, in.lights, in.vpls.position, in.vpls.normal, in.vpls.radius,
       streamKey(seed, Stream::PathLights), ProgressFn{});
 }
 

@@ -46,9 +46,9 @@ class VplPaths {
   VplPaths(const EstimateInputs& in, const Settings& settings)
       : in_(in),
         settings_(settings),
-        coverage_(in.vpls.position, in.vpls.normal, reachOf(in.vpls, settings.radius), in.rays),
+        coverage_(in.vpls.position, in.vpls.normal, reachOf(in.vpls, settings.radius), in.accel),
         length_{settings.maxBounces - 1},
-        groups_(in.rays.scene().lightGroupCount()) {}
+        groups_(in.accel.scene().lightGroupCount()) {}
 
   // Estimates the flux of one VPL from points of its disk, and offers them as emission points.
   // `byGroup` receives the flux of each light group.

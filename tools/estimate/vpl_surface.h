@@ -5,7 +5,7 @@
 
 #include "formats/vpl/vpl_table.h"
 #include "tools/common/options/option.h"
-#include "transport/rays.h"
+#include "transport/accelerator.h"
 #include "transport/vpl_groups.h"
 
 namespace bnvpl {

@@ -18,12 +18,12 @@ std::vector<fs::path> mergeEstimated(ShardSet& shards, const MergeOutput& output
       loadSceneFor(sceneOptionsOf(fieldOf<Json>(whole.sources, "scene")), Warnings::Hold);
   requireSameInput(input, vpls.checksum, whole, "vpls");
   requireSameInput(scene.name(), scene.contentHash, whole, "scene");
-  const RayScene rays(scene, processorOf(whole.run));
-  const LightSet lights(rays);
+  const Accelerator accel(scene, processorOf(whole.run));
+  const LightSet lights(accel);
   const ShardSource source = shards.source();
   Resume resume;
   resume.source = &source;
-  EstimateResult result = estimate(vpls, rays, lights, options, {}, resume);
+  EstimateResult result = estimate(vpls, accel, lights, options, {}, resume);
   result.table.provenance = extendProvenance(vpls.provenance, whole.run);
   requireSound(result.table);
   writeVpl(files.add(output.product), result.table);

@@ -27,10 +27,10 @@ struct FilmPoint {
 // also through specular vertices, and the direct light of the first rough vertex are direct.
 void addPath(const PlaceInputs& in, Vec3 origin, Vec3 direction, Rng& rng, FilmPoint& point) {
   const SpecularPath path =
-      followSpecularPath(in.rays, in.lights, origin, direction, Arrival{}, rng);
+      followSpecularPath(in.accel, in.lights, origin, direction, Arrival{}, rng);
   Vec3 direct = path.emissionFirst + path.emissionLater, indirect;
   if (path.rough) {
-    addLeavingLight(in.rays, in.lights, Bsdf(in.rays.scene(), path.hit), path.throughput,
+    addLeavingLight(in.accel, in.lights, Bsdf(in.accel.scene(), path.hit), path.throughput,
                     {kMaxBounces}, nullptr, rng, direct, indirect);
   }
   if (!isFinite(direct) || !isFinite(indirect)) return;

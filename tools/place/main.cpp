@@ -38,9 +38,9 @@ int runPlace(const Request& request, const ToolOptions& tool) {
   if (method.needsLight || !scene.isToml()) scene.requireLight();
   printHeldWarnings();
   run.filesReady(scene.files);
-  const RayScene rays(scene, tool.processor);
-  const LightSet lights(rays);
-  const PlaceInputs inputs{rays, lights, views};
+  const Accelerator accel(scene, tool.processor);
+  const LightSet lights(accel);
+  const PlaceInputs inputs{accel, lights, views};
   if (run.estimating()) {
     return run.tell("VPLs placed,", [&](const ProgressFn& progress) {
       return costOfPlacing(inputs, options, progress, rowBytes);

@@ -136,11 +136,11 @@ PathRows decodeRows(std::string_view bytes, uint64_t begin) {
   };
   requireSize(bytes.size() >= sizeof counts);
   takeArray(bytes, counts);
-  const auto [size, flux, rays, escaped, absorbed, complete, nonFinite] = counts;
+  const auto [size, flux, accel, escaped, absorbed, complete, nonFinite] = counts;
   requireSize(size <= bytes.size());
   requireSize(bytes.size() == size * ((flux ? 5 : 3) * sizeof(Vec3) + sizeof(uint16_t)));
   PathRows chunk;
-  chunk.rays = rays, chunk.escaped = escaped, chunk.absorbed = absorbed;
+  chunk.rays = accel, chunk.escaped = escaped, chunk.absorbed = absorbed;
   chunk.complete = complete, chunk.nonFinite = nonFinite;
   for (std::vector<Vec3>* column : columns(chunk.rows)) {
     const bool ofLight = column == &chunk.rows.flux || column == &chunk.rows.firstBounceFlux;

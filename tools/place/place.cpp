@@ -49,7 +49,7 @@ PlaceResult joinRows(const Values& options, const ViewTurns& turns, const ShardS
 
 PlaceResult traceRows(const PlaceInputs& in, const Values& options, double spare,
                       const Resume& resume, const ProgressFn& progress) {
-  return traceShard(in.rays.scene().name(), options[kPlaceCountOption], spare, resume, progress,
+  return traceShard(in.accel.scene().name(), options[kPlaceCountOption], spare, resume, progress,
                     placeMethod(options).make(in, options));
 }
 
@@ -72,9 +72,9 @@ PlaceResult placeInPieces(const PlaceInputs& in, const Values& options, const Pr
 
 PlaceResult placeAtOnce(const PlaceInputs& in, const Values& options, const ProgressFn& progress) {
   const PlaceMethod& method = placeMethod(options);
-  PlaceResult result =
-      collectRows(in.rays.scene().name(), {options[kPlaceCountOption], method.last, in.views.turns},
-                  progress, method.make(in, options));
+  PlaceResult result = collectRows(in.accel.scene().name(),
+                                   {options[kPlaceCountOption], method.last, in.views.turns},
+                                   progress, method.make(in, options));
   method.finish(result);
   return result;
 }
@@ -86,7 +86,7 @@ PlaceResult place(const PlaceInputs& in, const Values& options, const ProgressFn
   PlaceResult result = resume.pause ? placeInPieces(in, options, progress, resume)
                                     : placeAtOnce(in, options, progress);
   result.table.indirectShare = indirectShareFor(in, options);
-  result.table.sceneHash = in.rays.scene().contentHash;
+  result.table.sceneHash = in.accel.scene().contentHash;
   return result;
 }
 

@@ -9,8 +9,8 @@
 #include "scene/scene.h"
 #include "tools/common/stage/method.h"
 #include "tools/place/view_turns.h"
+#include "transport/accelerator.h"
 #include "transport/lights.h"
-#include "transport/rays.h"
 
 namespace bnvpl {
 
@@ -42,7 +42,7 @@ inline constexpr WholeOption kPlaceCountOption =
                                         "VPLs to place; --method light may place slightly fewer")));
 
 struct PlaceInputs {
-  const RayScene& rays;
+  const Accelerator& accel;
   const LightSet& lights;
   const PlaceViews& views;
 };

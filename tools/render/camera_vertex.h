@@ -15,19 +15,20 @@ namespace bnvpl {
 // Follows a camera ray to the first rough vertex. Emission that it hits on the way is direct light.
 // `weight`, by the pixel filter, becomes part of the throughput and of all light. `groups`
 // receives the emission by light group.
-inline SpecularPath traceCameraPath(const RayScene& rays, const LightSet& lights, Vec3 origin,
+inline SpecularPath traceCameraPath(const Accelerator& accel, const LightSet& lights, Vec3 origin,
                                     Vec3 direction, float weight, Rng& rng, RadianceSample& out,
                                     const SpecularLightSampling& specularLights = {},
                                     const SampleGroups& groups = {}) {
   // Where the film is transparent, emission waits for the hit that tells it from the background.
-  const bool hidesSky = rays.scene().film.transparent;
+  const bool hidesSky = accel.scene().film.transparent;
   std::vector<Vec3> waiting(hidesSky ? groups.count : 0);
   SpecularLightSampling sampling = specularLights;
   if (groups.sums) {
     sampling.emissionFirst = (hidesSky ? sinkTo(waiting) : groups.emission()).times(weight);
     sampling.emissionLater = groups.direct().times(weight);
   }
-  SpecularPath path = followSpecularPath(rays, lights, origin, direction, Arrival{}, rng, sampling);
+  SpecularPath path =
+      followSpecularPath(accel, lights, origin, direction, Arrival{}, rng, sampling);
   if (weight != 1.0f) {
     for (Vec3* part : {&path.throughput, &path.emissionFirst, &path.emissionLater}) *part *= weight;
   }
@@ -37,24 +38,24 @@ inline SpecularPath traceCameraPath(const RayScene& rays, const LightSet& lights
   out.emission = path.emissionFirst;
   out.direct = path.emissionFirst + path.emissionLater;
   if (path.firstDistance < INFINITY) {
-    out.depth = path.firstDistance * dot(direction, rays.scene().camera.forward);
+    out.depth = path.firstDistance * dot(direction, accel.scene().camera.forward);
   }
   return path;
 }
 
 // The same for a camera ray of a pixel, at a place that its filter gives. A lens takes the next
 // point of `rng`.
-inline SpecularPath traceCameraPath(const RayScene& rays, const LightSet& lights, uint32_t x,
+inline SpecularPath traceCameraPath(const Accelerator& accel, const LightSet& lights, uint32_t x,
                                     uint32_t y, const PixelFilter::Sample& sample, Rng& rng,
                                     RadianceSample& out,
                                     const SpecularLightSampling& specularLights = {},
                                     const SampleGroups& groups = {}) {
-  const Scene& scene = rays.scene();
+  const Scene& scene = accel.scene();
   const Vec3 lens = sampleLens(scene.camera, [&] { return rng.nextPoint(); });
   const Ray ray = cameraRay(scene.camera, scene.film,
                             (static_cast<float>(x) + sample.at.x) / float(scene.film.width),
                             (static_cast<float>(y) + sample.at.y) / float(scene.film.height), lens);
-  return traceCameraPath(rays, lights, ray.origin, ray.direction, sample.weight, rng, out,
+  return traceCameraPath(accel, lights, ray.origin, ray.direction, sample.weight, rng, out,
                          specularLights, groups);
 }
 
@@ -69,15 +70,15 @@ inline void describeShadingPoint(const Bsdf& bsdf, RadianceSample& out) {
 // the lights without another bounce. `indirect`: whether indirect light is wanted at points that
 // the camera sees without a specular vertex between.
 template <typename Leaving>
-RadianceSample tracePath(const RayScene& rays, const LightSet& lights, const CameraSample& sample,
-                         Only only, bool indirect, Rng& rng, const Leaving& leaving,
-                         const SpecularLightSampling& specularLights = {}) {
+RadianceSample tracePath(const Accelerator& accel, const LightSet& lights,
+                         const CameraSample& sample, Only only, bool indirect, Rng& rng,
+                         const Leaving& leaving, const SpecularLightSampling& specularLights = {}) {
   RadianceSample out;
-  const SpecularPath path = traceCameraPath(rays, lights, sample.origin, sample.direction,
+  const SpecularPath path = traceCameraPath(accel, lights, sample.origin, sample.direction,
                                             sample.weight, rng, out, specularLights, sample.groups);
   const bool directOnly = only == Only::Direct || (!indirect && path.specularBounces == 0);
   if (!path.rough) return out;
-  const Bsdf bsdf(rays.scene(), path.hit);
+  const Bsdf bsdf(accel.scene(), path.hit);
   describeShadingPoint(bsdf, out);
   if (directOnly && only == Only::Indirect) return out;
   leaving(bsdf, path.throughput, directOnly, out);

@@ -45,27 +45,27 @@ Film filmToTry(const Film& film) {
   return {scaled(film.width), scaled(film.height), film.transparent};
 }
 
-Cost costOfRendering(const RayScene& rays, const LightSet& lights, const VplTable& lit,
+Cost costOfRendering(const Accelerator& accel, const LightSet& lights, const VplTable& lit,
                      const ImageToMake& image, const ProgressFn& progress) {
   constexpr uint64_t kMaxSpp = 64;  // as many as are taken together: more are more of the same
   const auto& [film, given, options, apart] = image;
   const Values plain = resolveRender(withoutPasses(given, options));
   const uint64_t spp = plain[kSppOption], tried = std::min(spp, kMaxSpp);
-  const Film& small = rays.scene().film;
+  const Film& small = accel.scene().film;
   const double pixels = double(film.width) * film.height,
                fewPixels = double(small.width) * small.height;
   CostTrial trial(cpuSecondsSoFar);
   trial.pixels = uint64_t{film.width} * film.height;
   trial.repeats = double(spp) / double(tried);
   const MemoryWatch memory;
-  const Integrator integrator = makeIntegrator(rays, lights, lit, plain, progress, &trial);
+  const Integrator integrator = makeIntegrator(accel, lights, lit, plain, progress, &trial);
   UnitsToTry units;
   units.apart = apart;
   // Photons go in rounds of as many samples as 64 tiles have; some of each round are to be tried.
   if (integrator.tracePhotons) units.fewest *= 1.0 + 64.0 / double(tried);
   Cost cost = costOfUnits(
       [&](const Resume& resume) {
-        renderSamples(rays, integrator, plain, static_cast<uint32_t>(tried), progress, resume);
+        renderSamples(accel, integrator, plain, static_cast<uint32_t>(tried), progress, resume);
       },
       trial, units);
   constexpr double kDevelopS = 5e-7;  // a pixel, its file included (measured)
@@ -76,7 +76,7 @@ Cost costOfRendering(const RayScene& rays, const LightSet& lights, const VplTabl
   cost.probed =
       std::min(1.0, cost.probed * (fewPixels / pixels) * (double(tried) / double(spp)) / crop);
   // What the film takes, and what an image that is developed takes besides (measured).
-  const auto groups = double(lightGroupsOf(plain, rays.scene()).size());
+  const auto groups = double(lightGroupsOf(plain, accel.scene()).size());
   cost.memoryBytes += (cost.memoryBytes - memory.before()) * (pixels / fewPixels - 1.0);
   cost.memoryBytes += pixels * (60.0 + (redistributesFireflies(plain) ? 170.0 : 0.0) +
                                 (budgetOf(options) ? 100.0 : 0.0) + 24.0 * groups);

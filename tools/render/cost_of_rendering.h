@@ -19,7 +19,7 @@ struct ImageToMake {
 
 // What render() will take, found by rendering fewer pixels and samples where these are many. The
 // scene's film is filmToTry() of the image's.
-Cost costOfRendering(const RayScene& rays, const LightSet& lights, const VplTable& lit,
+Cost costOfRendering(const Accelerator& accel, const LightSet& lights, const VplTable& lit,
                      const ImageToMake& image, const ProgressFn& progress);
 
 }  // namespace bnvpl

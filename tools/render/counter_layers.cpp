@@ -1,8 +1,9 @@
 #include "tools/render/counter_layers.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
-#include <utility>
+#include <tuple>
 
 #include "core/errors.h"
 #include "tools/render/integrator/integrator.h"
@@ -11,7 +12,16 @@ namespace bnvpl {
 
 namespace {
 
-// Calls fn(counter, "--gather NAME", "gather") for the counters of all methods.
+// The counter of VPLs that are not seen from their centre.
+constexpr std::array kSphereCounters{
+    Counter{"sampledpairs", "sampled pairs",
+            "VPLs whose light is a mean over directions of their sphere, without a closed form"}};
+
+std::span<const Counter> lightCounters(LightKind kind) {
+  return isFromCentre(kind) ? std::span<const Counter>() : kSphereCounters;
+}
+
+// Calls fn(counter, "--gather NAME", "gather") for the counters of all methods and kinds of light.
 template <typename Fn>
 void forEachCounter(const Fn& fn) {
   const auto ofSlot = [&](const auto& methods, std::string_view slot, std::string_view kind) {
@@ -22,11 +32,19 @@ void forEachCounter(const Fn& fn) {
   };
   ofSlot(gatherMethods(), kGatherSlot.name, "gather");
   ofSlot(compensateMethods(), kCompensateSlot.name, "compensation");
+  for (const std::string_view name : LightKinds::names) {
+    for (const Counter& c : lightCounters(lightKindNamed(name)))
+      fn(c, "--light " + std::string(name), "light");
+  }
 }
 
-std::vector<Counter> countersOf(const GatherMethod& gather, const CompensateMethod& compensate) {
+std::vector<Counter> countersOf(const GatherMethod& gather, const CompensateMethod& compensate,
+                                LightKind light) {
   std::vector<Counter> counters(gather.counters.begin(), gather.counters.end());
   counters.insert(counters.end(), compensate.counters.begin(), compensate.counters.end());
+  if (compensate.oneSize) return counters;  // it takes no light that is not seen from its centre
+  const std::span<const Counter> own = lightCounters(light);
+  counters.insert(counters.end(), own.begin(), own.end());
   return counters;
 }
 
@@ -42,18 +60,22 @@ std::string counterList() {
 
 std::vector<Counter> countersOf(const Values& options) {
   const GatherMethod* gather = gatherOf(options);
-  return gather ? countersOf(*gather, *compensationOf(options)) : std::vector<Counter>{};
+  return gather ? countersOf(*gather, *compensationOf(options), lightKindOf(options))
+                : std::vector<Counter>{};
 }
 
 std::span<const Layer> counterLayersOf(const Values& options) {
-  using Methods = std::pair<const GatherMethod*, const CompensateMethod*>;
+  using Methods = std::tuple<const GatherMethod*, const CompensateMethod*, LightKind>;
   static const auto all = [] {
     std::map<Methods, std::vector<Layer>> layers;
     for (const GatherMethod* gather : gatherMethods()) {
       for (const CompensateMethod* compensate : compensateMethods()) {
-        for (const Counter& c : countersOf(*gather, *compensate)) {
-          std::vector<Layer>& own = layers[{gather, compensate}];
-          own.push_back(counterLayer(c, own.size()));
+        for (const std::string_view name : LightKinds::names) {
+          const LightKind light = lightKindNamed(name);
+          for (const Counter& c : countersOf(*gather, *compensate, light)) {
+            std::vector<Layer>& own = layers[{gather, compensate, light}];
+            own.push_back(counterLayer(c, own.size()));
+          }
         }
       }
     }
@@ -61,7 +83,7 @@ std::span<const Layer> counterLayersOf(const Values& options) {
   }();
   const GatherMethod* gather = gatherOf(options);
   if (!gather) return {};
-  const auto own = all.find({gather, compensationOf(options)});
+  const auto own = all.find({gather, compensationOf(options), lightKindOf(options)});
   return own == all.end() ? std::span<const Layer>() : std::span<const Layer>(own->second);
 }
 

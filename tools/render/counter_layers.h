@@ -12,7 +12,7 @@ namespace bnvpl {
 
 // Lines of --help for the layers of all methods' own counters.
 std::string counterList();
-// Counters of a run: those of its gather, then those of its compensation.
+// Counters of a run: those of its gather, of its compensation, and of its kind of light.
 std::vector<Counter> countersOf(const Values& options);
 // Their layers.
 std::span<const Layer> counterLayersOf(const Values& options);

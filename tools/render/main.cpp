@@ -28,13 +28,13 @@ int runRender(StageRequest& request, const RenderFiles& files, const ToolOptions
   if (!run.estimating()) requireMemoryForImage(scene, options);
   const Film film = scene.film;
   if (run.estimating()) scene.film = filmToTry(film);
-  const RayScene rays(scene, tool.processor);
-  const LightSet lights(rays);
+  const Accelerator accel(scene, tool.processor);
+  const LightSet lights(accel);
   warnOfMissedLight(scene, lights, options, files);
   if (run.estimating()) {
     return run.tell("samples,", [&](const ProgressFn& progress) {
       const ImageToMake image{film, request.given, options, request.shard.has_value()};
-      return costOfRendering(rays, lights, lit, image, progress);
+      return costOfRendering(accel, lights, lit, image, progress);
     });
   }
 
@@ -46,7 +46,7 @@ int runRender(StageRequest& request, const RenderFiles& files, const ToolOptions
     return json;
   };
   const auto result = [&](const StageTask& t, const FilmPreview& preview) {
-    return render(rays, lights, lit, options, t.progress, t.resume, preview, run.startS());
+    return render(accel, lights, lit, options, t.progress, t.resume, preview, run.startS());
   };
   const ImagePaths images{request.output, files.png};
   const auto whole = [&](const StageTask& task) {

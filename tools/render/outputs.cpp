@@ -226,10 +226,6 @@ void reportGathered(const RenderResult& result, const Values& options, Summary& 
   summary.add("emission_points", result.emissionPoints);
   summary.add("mean_cut", stats.cut);
   summary.add("mean_shadow_rays", stats.shadowRays);
-  if (stats.filterPixels > 0.0) {
-    std::snprintf(line, sizeof line, "film filter: means over %.2f pixels", stats.filterPixels);
-    summary.add("mean_filter_pixels", stats.filterPixels, line);
-  }
   for (const PlanCount& c : result.planned) {
     std::snprintf(line, sizeof line, "%.0f %s", c.value, std::string(c.unit).c_str());
     summary.add(std::string(c.name), c.value, line);

@@ -271,11 +271,11 @@ RenderResult joinRendered(const Film& film, const Values& options, const ShardSo
   return result;
 }
 
-Integrator makeIntegrator(const RayScene& rays, const LightSet& lights, const VplTable& lit,
+Integrator makeIntegrator(const Accelerator& accel, const LightSet& lights, const VplTable& lit,
                           const Values& options, const ProgressFn& progress, CostTrial* trial) {
   const FilmOptions film = filmOptionsOf(options);
   const IntegratorMethod& method = integratorOf(options);
-  const auto groups = static_cast<uint32_t>(lightGroupsOf(options, rays.scene()).size());
+  const auto groups = static_cast<uint32_t>(lightGroupsOf(options, accel.scene()).size());
   VplGroups litGroups;
   if (groups > 0 && method.needsVpls && film.only != Only::Direct) {
     litGroups = vplGroupsOf(lit, groups);
@@ -285,30 +285,30 @@ Integrator makeIntegrator(const RayScene& rays, const LightSet& lights, const Vp
           "rerun it");
     }
   }
-  return method.make({rays, lights, lit, film.seed, film.only, film.filter, progress, trial, groups,
-                      std::move(litGroups)},
+  return method.make({accel, lights, lit, film.seed, film.only, film.filter, progress, trial,
+                      groups, std::move(litGroups)},
                      options);
 }
 
-void renderSamples(const RayScene& rays, const Integrator& integrator, const Values& options,
+void renderSamples(const Accelerator& accel, const Integrator& integrator, const Values& options,
                    uint32_t spp, const ProgressFn& progress, const Resume& resume) {
   FilmOptions film = filmOptionsOf(options);
   film.spp = spp;
-  film.groups = lightGroupsOf(options, rays.scene());
+  film.groups = lightGroupsOf(options, accel.scene());
   // Layers of first hits take next to no time.
   std::erase_if(film.layers, [](const Layer* l) { return l->firstHit != FirstHit::None; });
   FilmStats stats;
-  renderFilm(rays.scene(), integrator, film, stats, progress, resume);
+  renderFilm(accel.scene(), integrator, film, stats, progress, resume);
 }
 
-RenderResult render(const RayScene& rays, const LightSet& lights, const VplTable& lit,
+RenderResult render(const Accelerator& accel, const LightSet& lights, const VplTable& lit,
                     const Values& options, const ProgressFn& progress, const Resume& resume,
                     const FilmPreview& preview, double startS) {
   FilmOptions film = filmOptionsOf(options);
-  film.crop = cropOf(options, rays.scene().film);
-  film.firstHits = traceFirstHits(rays, film.filter, film.layers, film.seed, options[kSppOption]);
-  film.groups = lightGroupsOf(options, rays.scene());
-  const Integrator integrator = makeIntegrator(rays, lights, lit, options, progress);
+  film.crop = cropOf(options, accel.scene().film);
+  film.firstHits = traceFirstHits(accel, film.filter, film.layers, film.seed, options[kSppOption]);
+  film.groups = lightGroupsOf(options, accel.scene());
+  const Integrator integrator = makeIntegrator(accel, lights, lit, options, progress);
   RenderResult result;
   result.groups = film.groups;
   result.vpls = integrator.vpls;
@@ -316,18 +316,18 @@ RenderResult render(const RayScene& rays, const LightSet& lights, const VplTable
   result.planned = integrator.planned;
   result.caustics = integrator.caustics;
   // The reflected half is reflected again: 0.5 / (1 - 0.5) = 1.
-  if (const double area = surfaceArea(rays.scene()); area > 0.0)
+  if (const double area = surfaceArea(accel.scene()); area > 0.0)
     result.evenRadiance = double{mean(lights.totalPower())} / (std::numbers::pi * area);
   if (auto budget = budgetOf(options)) {
     budget->startS = startS;
-    result.image = renderPasses(rays.scene(), integrator, film, *budget, result.stats,
+    result.image = renderPasses(accel.scene(), integrator, film, *budget, result.stats,
                                 result.passes.emplace(), progress, resume, preview);
   } else {
     result.image =
-        renderFilm(rays.scene(), integrator, film, result.stats, progress, resume, preview);
+        renderFilm(accel.scene(), integrator, film, result.stats, progress, resume, preview);
   }
-  result.image.camera = imageCameraOf(rays.scene());
-  addFirstHitAttributes(rays.scene(), film.layers, result.image.attributes);
+  result.image.camera = imageCameraOf(accel.scene());
+  addFirstHitAttributes(accel.scene(), film.layers, result.image.attributes);
   return result;
 }
 

@@ -54,11 +54,11 @@ struct RenderResult {
 };
 
 // Makes the integrator of render(). `trial` is set for a cost estimate.
-Integrator makeIntegrator(const RayScene& rays, const LightSet& lights, const VplTable& lit,
+Integrator makeIntegrator(const Accelerator& accel, const LightSet& lights, const VplTable& lit,
                           const Values& options, const ProgressFn& progress,
                           CostTrial* trial = nullptr);
 // Renders only samples, `spp` per pixel, for a cost estimate.
-void renderSamples(const RayScene& rays, const Integrator& integrator, const Values& options,
+void renderSamples(const Accelerator& accel, const Integrator& integrator, const Values& options,
                    uint32_t spp, const ProgressFn& progress, const Resume& resume);
 
 // Joins the shards of an image. `film` and `groups` are those of the shards. The result's counts of
@@ -69,7 +69,7 @@ RenderResult joinRendered(const Film& film, const Values& options, const ShardSo
 // Renders the film of the scene. `lit` is of stage Lit, or empty if the integrator needs no VPLs. A
 // pure function: neither threads nor interruptions change a byte, given the same number of passes
 // if there is a budget. --time counts from `startS`, of nowS().
-RenderResult render(const RayScene& rays, const LightSet& lights, const VplTable& lit,
+RenderResult render(const Accelerator& accel, const LightSet& lights, const VplTable& lit,
                     const Values& options, const ProgressFn& progress = {},
                     const Resume& resume = {}, const FilmPreview& preview = {},
                     double startS = nowS());

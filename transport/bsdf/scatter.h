@@ -3,7 +3,7 @@
 
 #include "core/random.h"
 #include "core/sampling.h"
-#include "transport/rays.h"
+#include "transport/accelerator.h"
 
 namespace bnvpl {
 

@@ -9,7 +9,7 @@
 #include "core/random.h"
 #include "formats/vpl/vpl_layout.h"
 #include "tools/common/run/run_tool.h"
-#include "transport/rays.h"
+#include "transport/accelerator.h"
 
 namespace bnvpl {
 namespace {
@@ -43,7 +43,7 @@ Scene field() {
 void addHits(Processor processor, std::vector<float>& bits) {
   constexpr uint32_t kRays = 1024;
   const Scene scene = field();
-  const RayScene rays(scene, processor);
+  const Accelerator accel(scene, processor);
   Rng rng(2, 0);
   const auto above = [&](float height) {
     const float x = rng.next(), y = rng.next();
@@ -53,7 +53,7 @@ void addHits(Processor processor, std::vector<float>& bits) {
     const Vec3 from = above(4.0f), somewhere = above(0.5f);
     const Vec3 to = i % 2 == 0 ? somewhere : scene.corner(i % scene.maskedBegin, i % 3);
     SurfacePoint hit;
-    const bool met = rays.closestHit(from, normalize(to - from), hit);
+    const bool met = accel.closestHit(from, normalize(to - from), hit);
     bits.push_back(met ? static_cast<float>(hit.triangle) : -1.0f);
     if (met) bits.insert(bits.end(), {hit.distance, hit.u, hit.v});
   }

@@ -33,7 +33,7 @@ constexpr auto kOptions =
 // First rough vertices of `count` camera paths, spread over the film. Paths without one are left
 // out.
 std::vector<SurfacePoint> cameraPoints(const EliminateInputs& in, uint64_t key, uint64_t count) {
-  const Scene& scene = in.rays->scene();
+  const Scene& scene = in.accel->scene();
   std::vector<SurfacePoint> points;
   const auto phase = in.progress.before("camera points", count);
   for (uint64_t i = 0; i < count; ++i) {
@@ -42,7 +42,7 @@ std::vector<SurfacePoint> cameraPoints(const EliminateInputs& in, uint64_t key, 
     const Vec3 lens = sampleLens(scene.camera, [&] { return rng.nextPoint(); });
     const Ray ray = cameraRay(scene.camera, scene.film, film.x, film.y, lens);
     const SpecularPath path =
-        followSpecularPath(*in.rays, *in.lights, ray.origin, ray.direction, Arrival{}, rng);
+        followSpecularPath(*in.accel, *in.lights, ray.origin, ray.direction, Arrival{}, rng);
     if (path.rough) points.push_back(path.hit);
     if (in.progress) in.progress(1);
   }
@@ -53,14 +53,14 @@ std::vector<SurfacePoint> cameraPoints(const EliminateInputs& in, uint64_t key, 
 }
 
 // Contribution of light i of `vpls` to all points together, summed over the channels.
-double contribution(const VplLights& vpls, size_t i, const RayScene& rays,
+double contribution(const VplLights& vpls, size_t i, const Accelerator& accel,
                     const std::vector<SurfacePoint>& points) {
   double sum = 0.0;
   for (const SurfacePoint& p : points) {
     VplTransfer c;
-    const Bsdf bsdf(rays.scene(), p);
+    const Bsdf bsdf(accel.scene(), p);
     if (!unoccludedTransfer(vpls, i, bsdf, c)) continue;
-    if (rays.occluded(rays.offsetOrigin(p.position, p.ng), vpls.position[i])) continue;
+    if (accel.occluded(accel.offsetOrigin(p.position, p.ng), vpls.position[i])) continue;
     const Vec3 light = c.transfer * vpls.intensity[i];
     sum += double{light.x} + double{light.y} + double{light.z};
   }
@@ -96,14 +96,14 @@ Kept make(const EliminateInputs& in, const Values& options) {
   const VplTable& all = in.candidates;
   const uint64_t key = streamKey(options[kSeedOption], Stream::Eliminate) + 1;
   const std::vector<SurfacePoint> points = cameraPoints(in, key, options[kCameraPointsOption]);
-  const VplLights vpls = makeVplLights(all, *in.rays, options.real32(kClampOption));
+  const VplLights vpls = makeVplLights(all, *in.accel, options.real32(kClampOption));
   std::vector<double> brings(all.size(), 0.0);
   parallelFor(vpls.size(), 16, [&](size_t k) {
-    brings[vpls.row[k]] = contribution(vpls, k, *in.rays, points);
+    brings[vpls.row[k]] = contribution(vpls, k, *in.accel, points);
     if (in.progress) in.progress(1);
   });
   if (std::ranges::all_of(brings, [](double b) { return b == 0.0; })) {
-    throw InputError(in.rays->scene().name(),
+    throw InputError(in.accel->scene().name(),
                      "no VPL brings any light to what the camera sees; place more with vpl-place");
   }
   const std::vector<double> p =

@@ -13,7 +13,7 @@ struct FromLights {
   }
   VplTable keep(const Given& options) const {
     const Given given = with({{"count", "400"}, {"method", "rejection"}}, options);
-    return eliminate(all, resolve(eliminateSpec(), given), &world.rays, &world.lights).table;
+    return eliminate(all, resolve(eliminateSpec(), given), &world.accel, &world.lights).table;
   }
   double light(const VplTable& vpls) const {
     const Given plain = with(kPlainRender, {{"only", "indirect"}, {"clamp", "0.01"}});
@@ -79,7 +79,7 @@ TEST(Rejection, ReportsItsPreparations) {
   const FromLights& c = cornell();
   Preparations told;
   const Values options = resolve(eliminateSpec(), {{"count", "200"}, {"method", "rejection"}});
-  eliminate(c.all, options, &c.world.rays, &c.world.lights, told.progress);
+  eliminate(c.all, options, &c.world.accel, &c.world.lights, told.progress);
   EXPECT_EQ(told.names, std::vector<std::string>{"camera points"});
 }
 

@@ -138,7 +138,7 @@ class Estimator {
         phase, times,
         [&](const Resume& resume) {
           return withProgress(equivalent, work.shares.total(), [&](const ProgressFn& progress) {
-            return tracePhotons({in_.vpls, in_.rays, in_.lights, progress, resume}, run,
+            return tracePhotons({in_.vpls, in_.accel, in_.lights, progress, resume}, run,
                                 scatterToOneInSight);
           });
         },
@@ -158,7 +158,7 @@ class Estimator {
           uint64_t all = 0;
           for (const uint64_t n : points) all += gatherer.pathsOf(n);
           return withProgress(equivalent, all, [&](const ProgressFn& progress) {
-            return gatherAll({in_.vpls, in_.rays, in_.lights, progress, resume}, gatherer, points);
+            return gatherAll({in_.vpls, in_.accel, in_.lights, progress, resume}, gatherer, points);
           });
         },
         [](const PathResult& result) { return finishedState(result); });
@@ -235,7 +235,7 @@ class Estimator {
     }
     const Budget budget{std::max(whole - spent, 0.5 * whole), irradianceError()};
     const Split split =
-        trial ? splitOfSubset(pilots, budget) : splitWork(in_.vpls, in_.rays, pilots, budget);
+        trial ? splitOfSubset(pilots, budget) : splitWork(in_.vpls, in_.accel, pilots, budget);
     progressScale_ = static_cast<double>(work_ - reported_) * pilots.photonCost / split.cost;
     return split;
   }
@@ -257,7 +257,7 @@ class Estimator {
     keep(pilots.pointCost);
     pilots.photonCost /= times;
     const CostTrial::Part part(in_.resume.trial, times);
-    const Split some = splitWork(keepRows(in_.vpls, rows), in_.rays, pilots,
+    const Split some = splitWork(keepRows(in_.vpls, rows), in_.accel, pilots,
                                  {budget.cost / times, budget.error * std::sqrt(times)});
     Split split = some;
     split.cost *= times;

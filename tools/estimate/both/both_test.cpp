@@ -135,7 +135,7 @@ TEST(Both, IsTheSameForAnyThreadsAndInterruptions) {
   const Values options = resolve(estimateSpec(), {{"method", "both"}, {"photons", "100k"}});
   const auto made = [&](size_t threads, const Resume& resume) {
     tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    return estimate(vpls, world.rays, world.lights, options, {}, resume).table;
+    return estimate(vpls, world.accel, world.lights, options, {}, resume).table;
   };
   const VplTable one = made(1, {});
   EXPECT_GT(totalFlux(one), 0.0);
@@ -179,7 +179,7 @@ TEST(Both, ReportsProgressOnceForAllItsWork) {
     const ProgressFn progress{[&](uint64_t n) { told += preparing ? 0 : n; },
                               [&](std::string_view, uint64_t) { preparing = true; },
                               [&] { preparing = false; }};
-    const EstimateResult result = estimate(vpls, world.rays, world.lights, options, progress);
+    const EstimateResult result = estimate(vpls, world.accel, world.lights, options, progress);
     EXPECT_EQ(told, estimateWork(vpls, options).count) << error;
     EXPECT_GT(result.paths, 0u);
   }
@@ -193,7 +193,7 @@ TEST(Both, EndsWhereFluxesAreKnownWellEnough) {
   const auto run = [&](const char* error) {
     return lightVpls(world, vpls, {{"photons", "3M"}, {"irradiance-error", error}});
   };
-  const Receivers receivers(vpls, world.rays);
+  const Receivers receivers(vpls, world.accel);
   const auto errorOf = [&](const VplTable& lit) {
     std::vector<double> flux, variance;
     for (size_t i = 0; i < lit.size(); ++i) {
@@ -231,7 +231,7 @@ TEST(Both, WorksLessWhereLessOfTheLightIsIndirect) {
 TEST(Both, ReceiversStateTheErrorOfIrradiance) {
   const World world("cornell/scene.toml");
   const VplTable vpls = keptVpls(world, {{"count", "300"}}, {{"count", "6k"}});
-  const Receivers receivers(vpls, world.rays);
+  const Receivers receivers(vpls, world.accel);
   constexpr int kRuns = 12;
   std::vector<VplTable> runs;
   for (int run = 1; run <= kRuns; ++run)
@@ -287,7 +287,7 @@ TEST(Both, WeightsAreNotLedByFewSamplesOfThePilots) {
       variance += pilot->back().variance / (2.0 * kVpls);
     }
   }
-  const Split split = splitWork(vpls, world.rays, pilots, {kTimes * kVpls, 0.0});
+  const Split split = splitWork(vpls, world.accel, pilots, {kTimes * kVpls, 0.0});
   double result = 0.0;
   for (size_t i = 0; i < kVpls; ++i) {
     const double w = split.share[i], points = std::max(1e-3, double(split.points[i]));

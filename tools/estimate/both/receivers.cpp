@@ -30,17 +30,17 @@ float irradiancePerWatt(const VplTable& vpls, size_t at, size_t from) {
 
 }  // namespace
 
-Receivers::Receivers(const VplTable& vpls, const RayScene& rays)
+Receivers::Receivers(const VplTable& vpls, const Accelerator& accel)
     : vpls_(vpls.size()), weights_(countFor(vpls.size()) * vpls.size()) {
   const size_t count = countFor(vpls_);
   parallelFor(count, 1, [&](size_t r) {
     const size_t at = r * vpls_ / count;
-    const Vec3 from = rays.offsetOrigin(vpls.position[at], vpls.normal[at]);
+    const Vec3 from = accel.offsetOrigin(vpls.position[at], vpls.normal[at]);
     for (size_t i = 0; i < vpls_; ++i) {
       const float weight = irradiancePerWatt(vpls, at, i);
       if (!(weight > 0.0f)) continue;
-      const Vec3 to = rays.offsetOrigin(vpls.position[i], vpls.normal[i]);
-      if (!rays.occluded(from, to)) weights_[r * vpls_ + i] = weight;
+      const Vec3 to = accel.offsetOrigin(vpls.position[i], vpls.normal[i]);
+      if (!accel.occluded(from, to)) weights_[r * vpls_ + i] = weight;
     }
   });
 }

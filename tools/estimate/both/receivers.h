@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "formats/vpl/vpl_table.h"
-#include "transport/rays.h"
+#include "transport/accelerator.h"
 
 namespace bnvpl::methods::estimate::both {
 
@@ -14,7 +14,7 @@ namespace bnvpl::methods::estimate::both {
 class Receivers {
  public:
   // Traces a shadow ray from each receiver to each VPL that faces it, about a million in total.
-  Receivers(const VplTable& vpls, const RayScene& rays);
+  Receivers(const VplTable& vpls, const Accelerator& accel);
 
   // Standard deviation of the irradiance over the irradiance, clamped to 1 and averaged over the
   // receivers whose irradiance has variance. `flux` (W) and its `variance` have one entry per VPL.

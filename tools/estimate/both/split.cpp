@@ -223,10 +223,10 @@ Allocation bestAllocation(const PointAllocation& points, double photonCost, doub
 
 // Lowers the cost step by step, as long as the predicted error stays below that of the budget.
 Allocation smallestAllocation(const PointAllocation& points, const VplTable& vpls,
-                              const RayScene& rays, double photonCost, const Budget& budget) {
+                              const Accelerator& accel, double photonCost, const Budget& budget) {
   Allocation best = bestAllocation(points, photonCost, budget.cost);
   if (!(budget.error > 0.0)) return best;
-  const Receivers receivers(vpls, rays);
+  const Receivers receivers(vpls, accel);
   double cost = budget.cost;
   for (int step = 0; step < kSteps; ++step) {
     cost *= kStep;
@@ -239,10 +239,10 @@ Allocation smallestAllocation(const PointAllocation& points, const VplTable& vpl
 
 }  // namespace
 
-Split splitWork(const VplTable& vpls, const RayScene& rays, const Pilots& pilots,
+Split splitWork(const VplTable& vpls, const Accelerator& accel, const Pilots& pilots,
                 const Budget& budget) {
   const PointAllocation points(poolAllPilots(vpls, pilots));
-  const Allocation best = smallestAllocation(points, vpls, rays, pilots.photonCost, budget);
+  const Allocation best = smallestAllocation(points, vpls, accel, pilots.photonCost, budget);
   Split split;
   split.photons = std::max<uint64_t>(1, static_cast<uint64_t>(std::llround(best.photons)));
   split.points.resize(vpls.size());

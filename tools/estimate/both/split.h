@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "formats/vpl/vpl_table.h"
-#include "transport/rays.h"
+#include "transport/accelerator.h"
 
 namespace bnvpl::methods::estimate::both {
 
@@ -39,7 +39,7 @@ struct Budget {
 
 // Divides the budget such that the sum over VPLs of variance over local flux is minimal. Spends
 // less if that reaches budget.error.
-Split splitWork(const VplTable& vpls, const RayScene& rays, const Pilots& pilots,
+Split splitWork(const VplTable& vpls, const Accelerator& accel, const Pilots& pilots,
                 const Budget& budget);
 
 }  // namespace bnvpl::methods::estimate::both

@@ -37,7 +37,7 @@ EstimateResult make(const EstimateInputs& in, const Values& options) {
   resume.times = static_cast<double>(each) * static_cast<double>(paths) /
                  static_cast<double>(fewPoints * fewPaths);
   const PathResult received =
-      gatherAll({in.vpls, in.rays, in.lights, in.progress, resume}, gatherer, points);
+      gatherAll({in.vpls, in.accel, in.lights, in.progress, resume}, gatherer, points);
   EstimateResult result{in.vpls, {}, 0};
   VplTable& lit = result.table;
   beginLit(lit, options.real32(kRadiusOption));

@@ -115,7 +115,7 @@ TEST(Paths, AreTheSameForAnyThreadsAndInterruptions) {
   const Values options = resolve(estimateSpec(), {{"method", "paths"}, {"points", "16"}});
   const auto made = [&](size_t threads, const Resume& resume) {
     tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    return estimate(vpls, world.rays, world.lights, options, {}, resume).table;
+    return estimate(vpls, world.accel, world.lights, options, {}, resume).table;
   };
   const VplTable one = made(1, {});
   struct Stopped {};

@@ -17,29 +17,29 @@ constexpr uint32_t kMaxBands = 32;
 float meanChannel(Vec3 v) { return (v.x + v.y + v.z) / 3.0f; }
 
 // Adds the light of every VPL that leaves a point towards the camera, times `weight`, by row.
-void addLight(const RayScene& rays, const VplLights& vpls, const Bsdf& bsdf, Vec3 weight,
+void addLight(const Accelerator& accel, const VplLights& vpls, const Bsdf& bsdf, Vec3 weight,
               std::vector<float>& ofRow) {
-  const Vec3 from = rays.offsetOrigin(bsdf.point().position, bsdf.point().ng);
+  const Vec3 from = accel.offsetOrigin(bsdf.point().position, bsdf.point().ng);
   VplTransfer c;
   for (size_t i = 0; i < vpls.size(); ++i) {
     if (!unoccludedTransfer(vpls, i, bsdf, c)) continue;
-    if (rays.occluded(from, vpls.position[i])) continue;
+    if (accel.occluded(from, vpls.position[i])) continue;
     ofRow[vpls.row[i]] += meanChannel(weight * c.transfer * vpls.intensity[i]);
   }
 }
 
 // Follows a camera ray over specular lobes. Every surface on the way that has others receives.
-void addPath(const RayScene& rays, const VplLights& vpls, Ray ray, Rng& rng,
+void addPath(const Accelerator& accel, const VplLights& vpls, Ray ray, Rng& rng,
              std::vector<float>& ofRow) {
   Vec3 weight(1.0f);
   SurfacePoint hit;
   for (unsigned depth = 0; depth <= kMaxSpecular; ++depth) {
-    if (!rays.closestHit(ray.origin, ray.direction, hit)) return;
-    const Bsdf bsdf(rays.scene(), hit);
-    if (bsdf.hasRough()) addLight(rays, vpls, bsdf, weight, ofRow);
+    if (!accel.closestHit(ray.origin, ray.direction, hit)) return;
+    const Bsdf bsdf(accel.scene(), hit);
+    if (bsdf.hasRough()) addLight(accel, vpls, bsdf, weight, ofRow);
     BsdfSample sample;
     if (bsdf.specularProbability() <= 0.0f ||
-        !scatter(rays, bsdf, LobeGroup::Specular, Transport::Radiance, rng, sample, ray))
+        !scatter(accel, bsdf, LobeGroup::Specular, Transport::Radiance, rng, sample, ray))
       return;
     weight = weight * sample.weight;
   }
@@ -69,10 +69,10 @@ PixelContributions strongest(const std::vector<float>& ofRow, size_t count) {
 
 }  // namespace
 
-Contributions contributionsOf(const RayScene& rays, const VplTable& lit,
+Contributions contributionsOf(const Accelerator& accel, const VplTable& lit,
                               const ContributionOptions& options, const ProgressFn& progress) {
-  const VplLights vpls = makeVplLights(lit, rays, options.clamp);
-  const Camera& camera = rays.scene().camera;
+  const VplLights vpls = makeVplLights(lit, accel, options.clamp);
+  const Camera& camera = accel.scene().camera;
   const Film& film = options.film;
   const unsigned n = options.samplesPerAxis;
   const uint64_t key = streamKey(0, Stream::Contributions);
@@ -89,7 +89,7 @@ Contributions contributionsOf(const RayScene& rays, const VplTable& lit,
       const Vec3 lens = sampleLens(camera, [&] { return rng.nextPoint(); });
       const Ray ray =
           cameraRay(camera, film, at(x, s % n, film.width), at(y, s / n, film.height), lens);
-      addPath(rays, vpls, ray, rng, ofRow);
+      addPath(accel, vpls, ray, rng, ofRow);
     }
     for (float& light : ofRow) light /= static_cast<float>(n * n);
   };

@@ -6,7 +6,7 @@
 
 #include "core/progress.h"
 #include "formats/vpl/vpl_table.h"
-#include "transport/rays.h"
+#include "transport/accelerator.h"
 
 namespace bnvpl {
 
@@ -36,7 +36,7 @@ struct Contributions {
 // Sums, at each surface that a camera ray meets first or behind specular ones, the light of every
 // VPL without what compensation adds, as `vpl-render --gather all --compensate none` does. Counts
 // rows of the film as progress.
-Contributions contributionsOf(const RayScene& rays, const VplTable& lit,
+Contributions contributionsOf(const Accelerator& accel, const VplTable& lit,
                               const ContributionOptions& options, const ProgressFn& progress);
 
 // Memory in bytes that the contributions of `rows` VPLs and their JSON take.

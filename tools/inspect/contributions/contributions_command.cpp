@@ -60,12 +60,12 @@ int runContributions(const ContributionRequest& command, const ToolOptions& tool
   options.clamp = static_cast<float>(command.clamp);
   requireMemory(memoryOfContributions(options, table.size()),
                 "contributions to " + sizeText(scene.film) + " pixels", "choose a smaller --size");
-  const RayScene rays(scene);
+  const Accelerator accel(scene);
   const Contributions found = [&] {
     ProgressMeter meter("rows of pixels", scene.film.height, progressStyle(tool));
-    return contributionsOf(rays, table, options, meter.callback());
+    return contributionsOf(accel, table, options, meter.callback());
   }();
-  const Json list = contributionsJson(found, table, rowsInView(table, rays), options.clamp);
+  const Json list = contributionsJson(found, table, rowsInView(table, accel), options.clamp);
 
   OutputSet files;
   files.add(command.output).write(jsonText(list) + "\n");

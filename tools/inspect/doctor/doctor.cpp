@@ -39,9 +39,9 @@ class Findings {
   Json list_ = Json::array();
 };
 
-Json trialOf(const RayScene& rays, const LightSet& lights, size_t light, uint64_t photons,
+Json trialOf(const Accelerator& accel, const LightSet& lights, size_t light, uint64_t photons,
              Findings& findings) {
-  const LightTrial t = tryLight(rays, lights, light, photons);
+  const LightTrial t = tryLight(accel, lights, light, photons);
   const std::string name = lights.name(light);
   const bool local = lights.extent(light).local;
   findings.add(local && t.meetsAtOnce > 0.9,
@@ -64,7 +64,7 @@ Json trialOf(const RayScene& rays, const LightSet& lights, size_t light, uint64_
 
 // All lights, or the strongest where there are many. Returns the share of the tried power that
 // reaches the view.
-double describeLights(const RayScene& rays, const LightSet& lights, Json& json,
+double describeLights(const Accelerator& accel, const LightSet& lights, Json& json,
                       Findings& findings) {
   std::vector<size_t> order(lights.size());
   for (size_t i = 0; i < order.size(); ++i) order[i] = i;
@@ -77,7 +77,7 @@ double describeLights(const RayScene& rays, const LightSet& lights, Json& json,
   json["lights"] = Json::array();
   for (size_t i = 0; i < shown; ++i) {
     if (!(mean(lights.power(order[i])) > 0.0f)) continue;
-    json["lights"].push_back(trialOf(rays, lights, order[i], photons, findings));
+    json["lights"].push_back(trialOf(accel, lights, order[i], photons, findings));
     power += double{mean(lights.power(order[i]))};
     seen +=
         json["lights"].back()["reaches_view"].get<double>() * double{mean(lights.power(order[i]))};
@@ -93,8 +93,8 @@ double describeLights(const RayScene& rays, const LightSet& lights, Json& json,
   return share;
 }
 
-void describeView(const RayScene& rays, Json& json, Findings& findings) {
-  const ViewTrial v = tryView(rays);
+void describeView(const Accelerator& accel, Json& json, Findings& findings) {
+  const ViewTrial v = tryView(accel);
   json["view"] = {{"depth", v.depth}, {"open", v.open}, {"closed", v.closed}, {"behind", v.behind}};
   findings.add(v.open > 0.999, "the camera sees no surface",
                "turn it towards the scene: vpl-inspect scene shows its place and the bounds");
@@ -115,8 +115,8 @@ void describeView(const RayScene& rays, Json& json, Findings& findings) {
       "scale the scene to metres");
 }
 
-void describeVpls(const RayScene& rays, Json& json, Findings& findings) {
-  const double area = surfaceArea(rays.scene()), used = shareInUse(rays),
+void describeVpls(const Accelerator& accel, Json& json, Findings& findings) {
+  const double area = surfaceArea(accel.scene()), used = shareInUse(accel),
                depth = json["view"]["depth"].get<double>();
   const double radius = std::sqrt(used * area / (2.0 * std::sqrt(3.0) * kUsualVpls));
   json["vpls"] = {
@@ -131,8 +131,8 @@ void describeVpls(const RayScene& rays, Json& json, Findings& findings) {
                    "k of vpl-eliminate, and some 20 times as many of vpl-place");
 }
 
-void describeCost(const RayScene& rays, Json& json) {
-  const Scene& scene = rays.scene();
+void describeCost(const Accelerator& accel, Json& json) {
+  const Scene& scene = accel.scene();
   const double pixels = double{1} * scene.film.width * scene.film.height,
                samples = pixels * kUsualSpp,
                root = std::sqrt(static_cast<double>(scene.triangles.size()));
@@ -172,14 +172,14 @@ void describeWarnings(const Scene& scene, Json& json, Findings& findings) {
 
 }  // namespace
 
-Json diagnose(const RayScene& rays, const LightSet& lights) {
-  const Scene& scene = rays.scene();
+Json diagnose(const Accelerator& accel, const LightSet& lights) {
+  const Scene& scene = accel.scene();
   Json json{{"scene", scene.name()}};
   Findings findings;
-  json["reaches_view"] = describeLights(rays, lights, json, findings);
-  describeView(rays, json, findings);
-  describeVpls(rays, json, findings);
-  describeCost(rays, json);
+  json["reaches_view"] = describeLights(accel, lights, json, findings);
+  describeView(accel, json, findings);
+  describeVpls(accel, json, findings);
+  describeCost(accel, json);
   describeWarnings(scene, json, findings);
   json["findings"] = findings.list();
   return json;

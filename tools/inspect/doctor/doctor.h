@@ -4,8 +4,8 @@
 #include <string>
 
 #include "tools/common/files/json_text.h"
+#include "transport/accelerator.h"
 #include "transport/lights.h"
-#include "transport/rays.h"
 
 namespace bnvpl {
 
@@ -19,7 +19,7 @@ inline constexpr double kSecondsPerPhoton = 9.662e-07, kSecondsPerSampleLog2Vpls
 //  "view": {"depth", "open", "behind", "inside"}, "vpls": {...}, "cost": {...},
 //  "findings": [{"what", "change"}]}
 // Shares are of 0 to 1, lengths in scene units. The same scene gives the same result.
-Json diagnose(const RayScene& rays, const LightSet& lights);
+Json diagnose(const Accelerator& accel, const LightSet& lights);
 
 // The diagnosis for people.
 std::string doctorText(const Json& diagnosis);

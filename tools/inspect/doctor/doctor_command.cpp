@@ -24,8 +24,8 @@ int runDoctor(const DoctorRequest& command, const ToolOptions& tool) {
   // The diagnosis contains the warnings.
   const Scene scene = loadSceneFor(command.scene, Warnings::Hold);
   used.ready(scene.files);
-  const RayScene rays(scene);
-  const Json diagnosis = diagnose(rays, LightSet(rays));
+  const Accelerator accel(scene);
+  const Json diagnosis = diagnose(accel, LightSet(accel));
   saveStats("doctor", diagnosis, summary, tool);
   print(command.json ? jsonText(diagnosis, 2) + "\n" : doctorText(diagnosis));
   return kExitOk;

@@ -19,30 +19,31 @@ double sizeOf(const Scene& scene) { return length(scene.bounds.upper - scene.bou
 
 }  // namespace
 
-bool inSight(const RayScene& rays, const SurfacePoint& point) {
-  const Scene& scene = rays.scene();
+bool inSight(const Accelerator& accel, const SurfacePoint& point) {
+  const Scene& scene = accel.scene();
   const RasterPoint at = projectToFilm(scene.camera, scene.film, point.position);
   if (at.depth <= 0.0f || at.x < 0.0f || at.x > 1.0f || at.y < 0.0f || at.y > 1.0f) return false;
-  return !rays.occluded(rays.offsetOrigin(point.position, point.ng), scene.camera.position);
+  return !accel.occluded(accel.offsetOrigin(point.position, point.ng), scene.camera.position);
 }
 
-LightTrial tryLight(const RayScene& rays, const LightSet& lights, size_t light, uint64_t photons) {
+LightTrial tryLight(const Accelerator& accel, const LightSet& lights, size_t light,
+                    uint64_t photons) {
   LightTrial trial;
-  const double atOnce = kAtOnce * sizeOf(rays.scene());
+  const double atOnce = kAtOnce * sizeOf(accel.scene());
   double power = 0.0, seen = 0.0;
   for (uint64_t i = 0; i < photons; ++i) {
     Rng rng(kKey + light, i);
     const PhotonStart start = lights.emit(light, rng);
     trial.direction = trial.direction + start.direction;
     SurfacePoint first;
-    if (!rays.closestHit(start.origin, start.direction, first))
+    if (!accel.closestHit(start.origin, start.direction, first))
       trial.leaves += 1.0;
     else if (first.distance < atOnce)
       trial.meetsAtOnce += 1.0;
     power += mean(start.flux);
     bool found = false;
-    followPhoton(rays, PhotonWalk(start, kBounces, rng), [&](const Bsdf& bsdf, Vec3 flux, bool) {
-      if (found || !inSight(rays, bsdf.point())) return;
+    followPhoton(accel, PhotonWalk(start, kBounces, rng), [&](const Bsdf& bsdf, Vec3 flux, bool) {
+      if (found || !inSight(accel, bsdf.point())) return;
       found = true;
       seen += mean(flux);
     });
@@ -55,9 +56,9 @@ LightTrial tryLight(const RayScene& rays, const LightSet& lights, size_t light, 
   return trial;
 }
 
-ViewTrial tryView(const RayScene& rays) {
+ViewTrial tryView(const Accelerator& accel) {
   constexpr unsigned kSide = 32, kAround = 1024;
-  const Scene& scene = rays.scene();
+  const Scene& scene = accel.scene();
   const Vec3 eye = scene.camera.position;
   ViewTrial trial;
   std::vector<double> depths;
@@ -65,7 +66,7 @@ ViewTrial tryView(const RayScene& rays) {
   for (unsigned i = 0; i < kSide * kSide; ++i) {
     const float x = (static_cast<float>(i % kSide) + 0.5f) / kSide,
                 y = (static_cast<float>(i / kSide) + 0.5f) / kSide;
-    if (rays.closestHit(eye, cameraDirection(scene.camera, scene.film, x, y), hit))
+    if (accel.closestHit(eye, cameraDirection(scene.camera, scene.film, x, y), hit))
       depths.push_back(double{hit.distance});
   }
   const double film = kSide * kSide;
@@ -82,7 +83,7 @@ ViewTrial tryView(const RayScene& rays) {
     const float z = 1.0f - 2.0f * (static_cast<float>(i) + 0.5f) / kAround,
                 angle = 2.39996323f * static_cast<float>(i),  // golden spiral
         r = std::sqrt(1.0f - z * z);
-    if (!rays.closestHit(eye, {r * std::cos(angle), r * std::sin(angle), z}, hit)) continue;
+    if (!accel.closestHit(eye, {r * std::cos(angle), r * std::sin(angle), z}, hit)) continue;
     trial.closed += 1.0 / kAround;
     if (!hit.front) trial.behind += 1.0 / kAround;
   }

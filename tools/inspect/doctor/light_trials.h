@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <string>
 
+#include "transport/accelerator.h"
 #include "transport/lights.h"
-#include "transport/rays.h"
 
 namespace bnvpl {
 
@@ -18,10 +18,11 @@ struct LightTrial {
   double reachesView = 0.0;  // share of the power of which a diffuse hit is in sight of the camera
 };
 inline constexpr double kAtOnce = 0.01;
-LightTrial tryLight(const RayScene& rays, const LightSet& lights, size_t light, uint64_t photons);
+LightTrial tryLight(const Accelerator& accel, const LightSet& lights, size_t light,
+                    uint64_t photons);
 
 // Whether the camera sees a point, from the side that its geometric normal points to.
-bool inSight(const RayScene& rays, const SurfacePoint& point);
+bool inSight(const Accelerator& accel, const SurfacePoint& point);
 
 // What the camera sees, by a grid of rays through the film, and what is around it.
 struct ViewTrial {
@@ -31,7 +32,7 @@ struct ViewTrial {
   double closed = 0.0;    // share of these directions that meet a surface
   double touching = 0.0;  // share of the film that shows something within 1e-4 of the scene's size
 };
-ViewTrial tryView(const RayScene& rays);
+ViewTrial tryView(const Accelerator& accel);
 
 // "towards (0, -1, 0)", "in all directions".
 std::string directionText(Vec3 direction);

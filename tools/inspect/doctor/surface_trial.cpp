@@ -71,17 +71,17 @@ class SurfaceSampler {
 };
 
 // Whether the camera sees the point, or the point sees what the camera sees.
-bool inUse(const RayScene& rays, SurfacePoint point, Rng& rng) {
+bool inUse(const Accelerator& accel, SurfacePoint point, Rng& rng) {
   constexpr int kRays = 8;
   for (int side = 0; side < 2; ++side, point.ng = -point.ng) {
-    if (inSight(rays, point)) return true;
-    const Vec3 origin = rays.offsetOrigin(point.position, point.ng);
+    if (inSight(accel, point)) return true;
+    const Vec3 origin = accel.offsetOrigin(point.position, point.ng);
     const Basis basis(point.ng);
     for (int i = 0; i < kRays; ++i) {
       const float u = rng.next(), v = rng.next();
       SurfacePoint hit;
-      if (rays.closestHit(origin, basis.toWorld(sampleCosineHemisphere(u, v)), hit) &&
-          inSight(rays, hit))
+      if (accel.closestHit(origin, basis.toWorld(sampleCosineHemisphere(u, v)), hit) &&
+          inSight(accel, hit))
         return true;
     }
   }
@@ -90,14 +90,14 @@ bool inUse(const RayScene& rays, SurfacePoint point, Rng& rng) {
 
 }  // namespace
 
-double shareInUse(const RayScene& rays) {
+double shareInUse(const Accelerator& accel) {
   constexpr uint64_t kPoints = 8192;
-  if (!(surfaceArea(rays.scene()) > 0.0)) return 0.0;
-  const SurfaceSampler surface(rays.scene());
+  if (!(surfaceArea(accel.scene()) > 0.0)) return 0.0;
+  const SurfaceSampler surface(accel.scene());
   uint64_t used = 0;
   for (uint64_t i = 0; i < kPoints; ++i) {
     Rng rng(kSurfaceKey, i);
-    used += inUse(rays, surface.sample(rng), rng);
+    used += inUse(accel, surface.sample(rng), rng);
   }
   return static_cast<double>(used) / double{kPoints};
 }

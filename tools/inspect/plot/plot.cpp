@@ -20,13 +20,13 @@ constexpr float kDim = 0.4f;                  // dims the view, so that dots sta
 constexpr Vec3 kSky{0.16f, 0.19f, 0.24f};     // linear; for rays that leave the scene
 constexpr Vec3 kPlainDot{1.0f, 0.84f, 0.2f};  // sRGB
 
-Vec3 shadeRay(const RayScene& rays, Vec3 origin, Vec3 direction, Rng& rng) {
+Vec3 shadeRay(const Accelerator& accel, Vec3 origin, Vec3 direction, Rng& rng) {
   Vec3 weight(1.0f);
   SurfacePoint hit;
   for (unsigned depth = 0; depth <= kMaxMirrors; ++depth) {
-    if (!rays.closestHit(origin, direction, hit)) return weight * kSky;
-    const Bsdf bsdf(rays.scene(), hit);
-    const Material& material = rays.scene().materials[hit.material];
+    if (!accel.closestHit(origin, direction, hit)) return weight * kSky;
+    const Bsdf bsdf(accel.scene(), hit);
+    const Material& material = accel.scene().materials[hit.material];
     if (!isBlack(material.emission) && (hit.front || material.twoSidedEmission)) return weight;
     if (bsdf.hasRough() || bsdf.specularProbability() <= 0.0f) {
       const float headlight = std::max(0.0f, dot(hit.ns, hit.wo));
@@ -34,7 +34,7 @@ Vec3 shadeRay(const RayScene& rays, Vec3 origin, Vec3 direction, Rng& rng) {
     }
     BsdfSample sample;
     Ray next;
-    if (!scatter(rays, bsdf, LobeGroup::Specular, Transport::Radiance, rng, sample, next))
+    if (!scatter(accel, bsdf, LobeGroup::Specular, Transport::Radiance, rng, sample, next))
       return {};
     weight = weight * sample.weight;
     origin = next.origin;
@@ -103,8 +103,8 @@ std::vector<Vec3> dotColours(const VplTable& table, const PlotOptions& options) 
 
 }  // namespace
 
-Canvas shadeView(const RayScene& rays, unsigned samplesPerAxis) {
-  const Scene& scene = rays.scene();
+Canvas shadeView(const Accelerator& accel, unsigned samplesPerAxis) {
+  const Scene& scene = accel.scene();
   Canvas canvas{static_cast<int>(scene.film.width), static_cast<int>(scene.film.height), {}};
   canvas.pixels.resize(size_t{scene.film.width} * scene.film.height);
   const uint64_t key = streamKey(0, Stream::Plot);
@@ -120,15 +120,15 @@ Canvas shadeView(const RayScene& rays, unsigned samplesPerAxis) {
       const Vec3 direction =
           cameraDirection(scene.camera, scene.film, x / static_cast<float>(scene.film.width),
                           y / static_cast<float>(scene.film.height));
-      sum += min(shadeRay(rays, scene.camera.position, direction, rng), Vec3(1.0f));
+      sum += min(shadeRay(accel, scene.camera.position, direction, rng), Vec3(1.0f));
     }
     canvas.pixels[i] = encoded(sum / (n * n));
   });
   return canvas;
 }
 
-std::vector<RowInView> rowsInView(const VplTable& table, const RayScene& rays) {
-  const Scene& scene = rays.scene();
+std::vector<RowInView> rowsInView(const VplTable& table, const Accelerator& accel) {
+  const Scene& scene = accel.scene();
   std::vector<RowInView> rows(table.size());
   parallelFor(table.size(), 256, [&](size_t i) {
     const Vec3 position = table.position[i];
@@ -139,7 +139,7 @@ std::vector<RowInView> rowsInView(const VplTable& table, const RayScene& rays) {
     rows[i] = {film, faces ? RowSight::Outside : RowSight::FacingAway, inside};
     if (!inside) return;
     const Vec3 side = faces ? table.normal[i] : -table.normal[i];
-    const bool hidden = rays.occluded(scene.camera.position, rays.offsetOrigin(position, side));
+    const bool hidden = accel.occluded(scene.camera.position, accel.offsetOrigin(position, side));
     if (faces)
       rows[i].sight = hidden ? RowSight::Occluded : RowSight::InSight;
     else if (!hidden)
@@ -148,12 +148,12 @@ std::vector<RowInView> rowsInView(const VplTable& table, const RayScene& rays) {
   return rows;
 }
 
-std::vector<Dot> visibleDots(const VplTable& table, const RayScene& rays,
+std::vector<Dot> visibleDots(const VplTable& table, const Accelerator& accel,
                              const PlotOptions& options, PlotCounts& counts) {
   const std::vector<Vec3> colours = dotColours(table, options);
-  const std::vector<RowInView> rows = rowsInView(table, rays);
-  const auto width = static_cast<float>(rays.scene().film.width);
-  const auto height = static_cast<float>(rays.scene().film.height);
+  const std::vector<RowInView> rows = rowsInView(table, accel);
+  const auto width = static_cast<float>(accel.scene().film.width);
+  const auto height = static_cast<float>(accel.scene().film.height);
   std::vector<Dot> visible;
   for (size_t i = 0; i < rows.size(); ++i) {
     const auto& [film, sight, _] = rows[i];

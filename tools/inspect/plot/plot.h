@@ -26,7 +26,7 @@ struct RowInView {
   RowSight sight;
   bool onFilm;  // whether it projects onto the film, hidden or not
 };
-std::vector<RowInView> rowsInView(const VplTable& table, const RayScene& rays);
+std::vector<RowInView> rowsInView(const VplTable& table, const Accelerator& accel);
 
 // Numbers of rows by visibility; they add up to all rows.
 struct PlotCounts {
@@ -38,11 +38,11 @@ struct PlotCounts {
 
 // Renders the scene from its camera with a headlight, dimmed and without dots. Specular surfaces
 // show what they reflect or transmit.
-Canvas shadeView(const RayScene& rays, unsigned samplesPerAxis);
+Canvas shadeView(const Accelerator& accel, unsigned samplesPerAxis);
 
 // The visible dots, in row order. Throws InputError if the colour needs a column that the rows do
 // not have.
-std::vector<Dot> visibleDots(const VplTable& table, const RayScene& rays,
+std::vector<Dot> visibleDots(const VplTable& table, const Accelerator& accel,
                              const PlotOptions& options, PlotCounts& counts);
 
 }  // namespace bnvpl

@@ -69,16 +69,16 @@ int runPlot(const PlotRequest& command, const ToolOptions& tool) {
   PlotOptions options = command.plot;
   if (!command.colourGiven && table.stage == VplStage::Lit) options.colour = DotColour::Flux;
 
-  const RayScene rays(scene);
+  const Accelerator accel(scene);
   if (byContribution) {
     ProgressMeter meter("rows of pixels", contributionFilm(scene.film).height, progressStyle(tool));
     options.contributions =
-        contributionsOf(rays, table, {.film = contributionFilm(scene.film)}, meter.callback())
+        contributionsOf(accel, table, {.film = contributionFilm(scene.film)}, meter.callback())
             .radiance;
   }
   PlotCounts counts;
-  std::vector<Dot> dots = visibleDots(table, rays, options, counts);
-  Canvas canvas = shadeView(rays, options.samples);
+  std::vector<Dot> dots = visibleDots(table, accel, options, counts);
+  Canvas canvas = shadeView(accel, options.samples);
   canvas.paint(std::move(dots), static_cast<float>(options.dotPixels));
   OutputSet files;
   writePng(files.add(command.output), canvas.width, canvas.height, canvas.rgb8());

@@ -69,8 +69,8 @@ int runScene(const SceneRequest& command, const ToolOptions& tool) {
   used.ready(scene.files);
   if (folder) requireOutside(command.toml, scene.files, "the run reads");
   if (tool.strict) printHeldWarnings();  // throws if there are any
-  const RayScene rays(scene);
-  Json description = describeScene(scene, LightSet(rays));
+  const Accelerator accel(scene);
+  Json description = describeScene(scene, LightSet(accel));
   if (folder) {
     writeSceneToml(scene, *folder);
     folder->commit();

@@ -34,13 +34,13 @@ class CameraPath {
   const Ray& next() const { return next_; }
   // Processes the hit of next(): adds a candidate at a rough vertex after the first, and samples
   // the next ray. Returns false if the path has ended.
-  bool advance(const RayScene& rays, const SurfacePoint& hit, unsigned depth, PathRows& chunk) {
+  bool advance(const Accelerator& accel, const SurfacePoint& hit, unsigned depth, PathRows& chunk) {
     ++chunk.rays;
     if (hit.triangle == kNone) {
       ++chunk.escaped;
       return false;
     }
-    const Bsdf bsdf(rays.scene(), hit);
+    const Bsdf bsdf(accel.scene(), hit);
     const LobeChoice lobes = chooseLobes(bsdf, rng_);
     if (!lobes.specular() && bsdf.hasRough()) {
       if (++rough_ >= 2) chunk.add(bsdf, path_);
@@ -51,7 +51,7 @@ class CameraPath {
     }
     BsdfSample sample;
     if ((lobes.specular() && ++specular_ > kMaxSpecular) ||
-        !scatter(rays, bsdf, lobes.group, Transport::Radiance, rng_, sample, next_)) {
+        !scatter(accel, bsdf, lobes.group, Transport::Radiance, rng_, sample, next_)) {
       ++chunk.absorbed;
       return false;
     }
@@ -66,11 +66,11 @@ class CameraPath {
 };
 
 // Traces the paths of a chunk in batches. All paths of a batch advance by one ray in each round.
-void traceCameraPaths(const RayScene& rays, const PlaceViews& views, unsigned depth, uint64_t begin,
-                      uint64_t key, PathRows& chunk) {
-  std::array<CameraPath, RayScene::kBatch> paths;
-  std::array<Ray, RayScene::kBatch> next;
-  std::array<SurfacePoint, RayScene::kBatch> hits;
+void traceCameraPaths(const Accelerator& accel, const PlaceViews& views, unsigned depth,
+                      uint64_t begin, uint64_t key, PathRows& chunk) {
+  std::array<CameraPath, Accelerator::kBatch> paths;
+  std::array<Ray, Accelerator::kBatch> next;
+  std::array<SurfacePoint, Accelerator::kBatch> hits;
   const uint64_t end = begin + kPathsPerChunk;
   for (uint64_t path = begin; path < end;) {
     const size_t firstRow = chunk.path.size();
@@ -78,10 +78,10 @@ void traceCameraPaths(const RayScene& rays, const PlaceViews& views, unsigned de
     while (size < paths.size() && path < end) paths[size++] = {views, key, path++};
     while (size > 0) {
       for (size_t i = 0; i < size; ++i) next[i] = paths[i].next();
-      rays.closestHits({next.data(), size}, hits);
+      accel.closestHits({next.data(), size}, hits);
       size_t left = 0;
       for (size_t i = 0; i < size; ++i) {
-        if (paths[i].advance(rays, hits[i], depth, chunk)) paths[left++] = paths[i];
+        if (paths[i].advance(accel, hits[i], depth, chunk)) paths[left++] = paths[i];
       }
       size = left;
     }
@@ -95,8 +95,8 @@ void traceCameraPaths(const RayScene& rays, const PlaceViews& views, unsigned de
 TracePaths make(const PlaceInputs& in, const Values& options) {
   const uint64_t key = streamKey(options[kSeedOption], Stream::PlaceCamera);
   const auto depth = static_cast<unsigned>(options[kDepthOption]);
-  return [&rays = in.rays, &views = in.views, key, depth](uint64_t begin, PathRows& chunk) {
-    traceCameraPaths(rays, views, depth, begin, key, chunk);
+  return [&accel = in.accel, &views = in.views, key, depth](uint64_t begin, PathRows& chunk) {
+    traceCameraPaths(accel, views, depth, begin, key, chunk);
   };
 }
 

@@ -14,15 +14,15 @@ constexpr auto kLightDepthOption =
     wholeOption("light-depth", "32", 1, 1000, "", "diffuse hits of a photon");
 constexpr auto kOptions = optionTable(kLightDepthOption);
 
-void tracePhotonPath(const RayScene& rays, const LightSet& lights, unsigned depth, uint64_t path,
-                     uint64_t key, PathRows& chunk) {
+void tracePhotonPath(const Accelerator& accel, const LightSet& lights, unsigned depth,
+                     uint64_t path, uint64_t key, PathRows& chunk) {
   Rng rng(key, path);
   float probability = 0.0f;
   const size_t light = lights.pick(rng.next(), probability);
   PhotonStart start = lights.emit(light, rng);
   start.flux *= 1.0f / probability;
   const PhotonFate fate = followPhoton(
-      rays, PhotonWalk(start, depth, rng), [&](const Bsdf& bsdf, Vec3 flux, bool firstBounce) {
+      accel, PhotonWalk(start, depth, rng), [&](const Bsdf& bsdf, Vec3 flux, bool firstBounce) {
         if (!chunk.add(bsdf, path)) return;
         chunk.rows.flux.push_back(flux * bsdf.roughAlbedo());
         chunk.rows.firstBounceFlux.push_back(firstBounce ? chunk.rows.flux.back() : Vec3{});
@@ -36,9 +36,9 @@ TracePaths make(const PlaceInputs& in, const Values& options) {
   in.lights.requirePower();
   const uint64_t key = streamKey(options[kSeedOption], Stream::PlaceLight);
   const auto depth = static_cast<unsigned>(options[kLightDepthOption]);
-  return [&rays = in.rays, &lights = in.lights, key, depth](uint64_t begin, PathRows& chunk) {
+  return [&accel = in.accel, &lights = in.lights, key, depth](uint64_t begin, PathRows& chunk) {
     for (uint64_t path = begin; path < begin + kPathsPerChunk; ++path)
-      tracePhotonPath(rays, lights, depth, path, key, chunk);
+      tracePhotonPath(accel, lights, depth, path, key, chunk);
   };
 }
 

@@ -12,7 +12,7 @@
 #include "spatial/reach_grid.h"
 #include "tools/common/stage/method.h"
 #include "tools/render/gather/gather.h"
-#include "transport/rays.h"
+#include "transport/accelerator.h"
 #include "transport/spatial_light_sampler.h"
 #include "transport/virtual_light_kinds.h"
 #include "transport/vpl_groups.h"
@@ -80,7 +80,7 @@ inline float commonRadius(const VplTable& lit) {
 // Inputs of a method, borrowed until the image is done.
 struct CompensateInputs {
   const VplTable& lit;
-  const RayScene& rays;
+  const Accelerator& accel;
   float clamp;  // bound on 1/d^2, in units of each VPL's r_max
   LightKind light;
   const VplGroups& groups;  // the VPLs' flux by light group; empty: not told apart

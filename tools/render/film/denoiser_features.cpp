@@ -14,14 +14,14 @@ Vec3 atMostOne(Vec3 v) { return min(v, Vec3{1.0f}); }
 
 }  // namespace
 
-DenoiserFeatures denoiserFeatures(const RayScene& rays, const SurfacePoint& first, Rng& rng) {
+DenoiserFeatures denoiserFeatures(const Accelerator& accel, const SurfacePoint& first, Rng& rng) {
   DenoiserFeatures out;
   SurfacePoint hit = first;
   Vec3 throughput{1.0f};
   float normalLeft = 1.0f;
   for (unsigned followed = 0;; ++followed) {
     if (hit.triangle == kNone) return out;
-    const Bsdf bsdf(rays.scene(), hit);
+    const Bsdf bsdf(accel.scene(), hit);
     const bool ends = bsdf.specularProbability() == 0.0f || !bsdf.specularIsDelta();
     const Vec3 here = throughput * atMostOne(ends ? bsdf.albedo() : bsdf.roughAlbedo());
     out.albedo += here;
@@ -32,7 +32,7 @@ DenoiserFeatures denoiserFeatures(const RayScene& rays, const SurfacePoint& firs
     normalLeft *= passed;
     BsdfSample sample;
     Ray next;
-    if (!scatter(rays, bsdf, LobeGroup::Specular, Transport::Radiance, rng, sample, next))
+    if (!scatter(accel, bsdf, LobeGroup::Specular, Transport::Radiance, rng, sample, next))
       return out;
     throughput = throughput * atMostOne(sample.weight);
     if (followed == kMaxFollowed) {
@@ -40,7 +40,7 @@ DenoiserFeatures denoiserFeatures(const RayScene& rays, const SurfacePoint& firs
       out.normal += hit.ns * normalLeft;
       return out;
     }
-    rays.closestHit(next.origin, next.direction, hit);
+    accel.closestHit(next.origin, next.direction, hit);
   }
 }
 

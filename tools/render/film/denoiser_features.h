@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/random.h"
-#include "transport/rays.h"
+#include "transport/accelerator.h"
 
 namespace bnvpl {
 
@@ -20,6 +20,6 @@ struct DenoiserFeatures {
 // Features of a camera ray that hit `first`. Perfect mirrors and glass show those of what they
 // reflect and transmit, at random by Fresnel; a perfectly smooth coat adds what it reflects to the
 // albedo of its base. Normals keep their full length: a coat and its base share it.
-DenoiserFeatures denoiserFeatures(const RayScene& rays, const SurfacePoint& first, Rng& rng);
+DenoiserFeatures denoiserFeatures(const Accelerator& accel, const SurfacePoint& first, Rng& rng);
 
 }  // namespace bnvpl

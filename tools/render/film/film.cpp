@@ -77,9 +77,10 @@ Image develop(const Film& size, const FilmOptions& options, FilmState& state, Fi
   }
   const PixelBox box = options.crop.value_or(
       PixelBox{0, 0, static_cast<int>(size.width), static_cast<int>(size.height)});
-  double filterPixels = 0.0;
   if (options.gatherFilter)
-    filterPixels = applyFilter(options.gatherFilter, size.width, box, state.pixels);
+    applyFilter(
+        options.gatherFilter, size.width, box, [&](size_t) { return options.spp; }, state.pixels,
+        state.counts);
   for (size_t k = 0; options.only != Only::Direct && k < state.groupSplats.pixels(); ++k) {
     for (size_t c = 0; c < 3; ++c) state.groups.sums[3 * k + c] += state.groupSplats.sum(k, c);
   }
@@ -106,7 +107,6 @@ Image develop(const Film& size, const FilmOptions& options, FilmState& state, Fi
   addFirstHits(state.tiles, options.layers, firstHits, box, image);
   stats = statsOf(film, uint64_t{options.spp} * state.pixels.size());
   stats.nonFinite += state.splats.nonFinite();
-  stats.filterPixels = filterPixels;
   return options.crop ? onFilm(image, size, *options.crop) : image;
 }
 

@@ -35,7 +35,6 @@ struct FilmStats {
   double direct = 0, indirect = 0, clamped = 0, compensated = 0;
   double cut = 0, shadowRays = 0;          // means per sample
   std::array<double, kMaxCounters> own{};  // the same of the methods' own counters
-  double filterPixels = 0;  // mean number of pixels that gatherFilter averages; 0: none
   uint64_t samples = 0;
   uint64_t nonFinite = 0;  // samples counted as zero because a value was NaN or infinite
 };

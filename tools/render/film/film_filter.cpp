@@ -37,20 +37,21 @@ PixelBox FilmFilter::needed(const PixelBox& box, uint32_t width, uint32_t height
           std::min(static_cast<int>(height), box.y1 + reach)};
 }
 
-double applyFilter(const FilmFilter& filter, uint32_t width, const PixelBox& box,
-                   std::span<PixelSums> film) {
+void applyFilter(const FilmFilter& filter, uint32_t width, const PixelBox& box,
+                 const std::function<uint64_t(size_t)>& samples, std::span<PixelSums> film,
+                 std::span<PixelCounts> counts) {
   FilmSurfaces seen{width, static_cast<uint32_t>(film.size() / width), {}};
   seen.pixels.resize(film.size());
   parallelFor(film.size(), 1024, [&](size_t i) { seen.pixels[i] = surfaceOf(film[i]); });
   const auto across = static_cast<size_t>(box.x1 - box.x0);
   const size_t count = across * static_cast<size_t>(box.y1 - box.y0);
-  std::vector<uint32_t> pixels(count);
   parallelFor(count, 256, [&](size_t k) {
     const auto x = static_cast<uint32_t>(box.x0) + static_cast<uint32_t>(k % across);
     const auto y = static_cast<uint32_t>(box.y0) + static_cast<uint32_t>(k / across);
     const FilteredLight filtered = filter.light(seen, x, y);
-    PixelSums& p = film[size_t{y} * width + x];
-    pixels[k] = filtered.pixels;
+    const size_t i = size_t{y} * width + x;
+    PixelSums& p = film[i];
+    counts[i].own[0] = filtered.pixels * samples(i);
     for (size_t c = 0; c < 3; ++c) {
       const double after = double{filtered.light[int(c)]} * p.sum[PixelSums::kAlbedo + c];
       double& before = p.sum[PixelSums::kGathered + c];
@@ -58,9 +59,6 @@ double applyFilter(const FilmFilter& filter, uint32_t width, const PixelBox& box
       before = after;
     }
   });
-  double sum = 0.0, surfaces = 0.0;
-  for (const uint32_t n : pixels) sum += n, surfaces += n > 0 ? 1.0 : 0.0;
-  return surfaces > 0.0 ? sum / surfaces : 0.0;
 }
 
 }  // namespace bnvpl

@@ -40,9 +40,10 @@ struct FilmFilter {
 };
 
 // Replaces the gathered light of the pixels in `box`, and with it their indirect light. A pixel
-// keeps its own albedo, so that textures stay sharp. Returns the mean number of pixels that one
-// with a surface comes from.
-double applyFilter(const FilmFilter& filter, uint32_t width, const PixelBox& box,
-                   std::span<PixelSums> film);
+// keeps its own albedo, so that textures stay sharp. The first of the gather's own counters
+// receives FilteredLight::pixels; `samples(i)` is the number of samples of the i-th pixel.
+void applyFilter(const FilmFilter& filter, uint32_t width, const PixelBox& box,
+                 const std::function<uint64_t(size_t)>& samples, std::span<PixelSums> film,
+                 std::span<PixelCounts> counts);
 
 }  // namespace bnvpl

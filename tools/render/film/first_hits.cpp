@@ -25,19 +25,19 @@ struct PixelHits {
 
 class FirstHits {
  public:
-  FirstHits(const RayScene& rays, const PixelFilter& filter, std::span<const Layer* const> layers,
-            uint64_t seed, uint64_t spp)
-      : rays_(rays),
+  FirstHits(const Accelerator& accel, const PixelFilter& filter,
+            std::span<const Layer* const> layers, uint64_t seed, uint64_t spp)
+      : accel_(accel),
         filter_(filter),
-        tiles_(rays.scene().film),
+        tiles_(accel.scene().film),
         layers_(firstHitLayers(layers)),
         key_(streamKey(seed, Stream::PixelSamples)),
         range_{0, static_cast<uint32_t>(std::min(spp, kMaxFirstHitSamples)),
                static_cast<uint32_t>(std::min<uint64_t>(spp, UINT32_MAX)),
                std::min<uint64_t>(spp, UINT32_MAX)} {
-    for (const std::string& name : objectMatteNames(rays.scene()))
+    for (const std::string& name : objectMatteNames(accel.scene()))
       objectIds_.push_back(cryptomatteId(name));
-    for (const std::string& name : materialMatteNames(rays.scene()))
+    for (const std::string& name : materialMatteNames(accel.scene()))
       materialIds_.push_back(cryptomatteId(name));
     for (const Layer* layer : layers_)
       features_ |= layer->firstHit == FirstHit::Albedo || layer->firstHit == FirstHit::Normal;
@@ -56,12 +56,12 @@ class FirstHits {
  private:
   PixelHits trace(uint32_t x, uint32_t y) const {
     PixelHits out;
-    const Scene& scene = rays_.scene();
+    const Scene& scene = accel_.scene();
     for (uint32_t s = 0; s < range_.end; ++s) {
       CameraSample sample = makeSample(scene, filter_, key_, range_, x, y, s);
       ++out.samples;
       SurfacePoint hit;
-      if (!rays_.closestHit(sample.origin, sample.direction, hit)) continue;
+      if (!accel_.closestHit(sample.origin, sample.direction, hit)) continue;
       ++out.hits;
       for (size_t c = 0; c < 3; ++c)
         out.position[c] += double{hit.position[int(c)]} + scene.origin[c];
@@ -70,7 +70,7 @@ class FirstHits {
       out.materials.push_back(hit.material);
       out.objectMattes.push_back(objectIds_[object]);
       out.materialMattes.push_back(materialIds_[hit.material]);
-      if (features_) out.features += denoiserFeatures(rays_, hit, sample.rng);
+      if (features_) out.features += denoiserFeatures(accel_, hit, sample.rng);
     }
     return out;
   }
@@ -118,7 +118,7 @@ class FirstHits {
     }
   }
 
-  const RayScene& rays_;
+  const Accelerator& accel_;
   PixelFilter filter_;
   Tiles tiles_;
   std::vector<const Layer*> layers_;
@@ -143,10 +143,10 @@ size_t firstHitChannels(std::span<const Layer* const> layers) {
   return channels;
 }
 
-FirstHitValues traceFirstHits(const RayScene& rays, const PixelFilter& filter,
+FirstHitValues traceFirstHits(const Accelerator& accel, const PixelFilter& filter,
                               std::span<const Layer* const> layers, uint64_t seed, uint64_t spp) {
   if (firstHitLayers(layers).empty()) return {};
-  const auto hits = std::make_shared<const FirstHits>(rays, filter, layers, seed, spp);
+  const auto hits = std::make_shared<const FirstHits>(accel, filter, layers, seed, spp);
   return [hits](size_t tile) { return hits->tile(tile); };
 }
 

@@ -12,7 +12,7 @@
 
 #include "tools/render/film/layers.h"
 #include "tools/render/film/tiles.h"
-#include "transport/rays.h"
+#include "transport/accelerator.h"
 
 namespace bnvpl {
 
@@ -29,7 +29,7 @@ size_t firstHitChannels(std::span<const Layer* const> layers);
 
 // The function that traces a tile; empty without such layers. `filter` spreads the rays, which all
 // count alike. `spp`: samples per pixel of the image. Thread-safe; borrows the rays.
-FirstHitValues traceFirstHits(const RayScene& rays, const PixelFilter& filter,
+FirstHitValues traceFirstHits(const Accelerator& accel, const PixelFilter& filter,
                               std::span<const Layer* const> layers, uint64_t seed, uint64_t spp);
 
 // Adds the channels to an image of the pixels in `box`. Tiles are asked for in parallel, each once.

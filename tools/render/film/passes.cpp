@@ -60,7 +60,6 @@ class Passes {
     addFirstHits(tiles_, options_.layers, options_.firstHits, {0, 0, image.width, image.height},
                  image);
     stats = statsOf(shown.sums, samplesSoFar());
-    stats.filterPixels = shown.filterPixels;
     stats.nonFinite += state_.at.splats.nonFinite;
     done = {state_.at.pass, error_, nowS() - startS_, passSpp(), endedBy_};
     return image;
@@ -81,19 +80,23 @@ class Passes {
   // The sums so far as the image shows them; `sums` refers to the vectors.
   struct Shown {
     std::vector<PixelSums> filtered;
-    double filterPixels = 0.0;
+    std::vector<PixelCounts> counts;  // with those of the filter
     std::vector<BothLights> redistributed;
     std::vector<Vec3> groups;  // change of the light groups by the redistribution
     FilmSums sums;
   };
   Shown shown() const {
-    Shown out{{}, 0.0, {}, {}, sumsSoFar()};
+    Shown out{{}, {}, {}, {}, sumsSoFar()};
     const Film& film = scene_.film;
     if (options_.gatherFilter) {
       out.filtered = state_.sums;
       const PixelBox all{0, 0, static_cast<int>(film.width), static_cast<int>(film.height)};
-      out.filterPixels = applyFilter(options_.gatherFilter, film.width, all, out.filtered);
+      out.counts = state_.counts;
+      applyFilter(
+          options_.gatherFilter, film.width, all, [&](size_t i) { return known_[i].samples; },
+          out.filtered, out.counts);
       out.sums.sums = out.filtered;
+      out.sums.counts = out.counts;
     }
     if (options_.redistributeFireflies)
       out.sums.redistributed = out.redistributed =

@@ -25,7 +25,8 @@ struct Gathered {
   Vec3 clamped;      // radiance that the bound on 1/d^2 removed
   uint32_t cut = 0;  // clusters or VPLs evaluated
   uint32_t shadowRays = 0;
-  Counts counts{};  // by the method's own counters
+  uint32_t sampledPairs = 0;  // VPLs whose light is a mean of samples (spherical_light.h)
+  Counts counts{};            // by the method's own counters
 };
 
 // The receivers of a tile's samples; null where a sample has none.
@@ -71,7 +72,7 @@ struct PrimaryPoints {
 
 // Inputs of a method, borrowed until the image is done.
 struct GatherInputs {
-  const RayScene& rays;
+  const Accelerator& accel;
   const LightSet& lights;
   const VplTable& lit;  // rows that `vpls` names
   const VplLights& vpls;
@@ -86,7 +87,8 @@ struct GatherMethod {
   std::span<const Option> options;
   Gather (*make)(const GatherInputs&, const Values&);
   std::span<const Counter> counters = {};
-  // Smooths the gathered light over the film; null or an empty filter: it stays as it is.
+  // Smooths the gathered light over the film; null or an empty filter: it stays as it is. The first
+  // of `counters` is the number of pixels that the filter averages.
   FilmFilter (*filmFilter)(const Values&) = nullptr;
   bool lightGroups = true;  // fills TileReceivers::groupSums
   bool pixelSum = false;    // treats all samples of a pixel as one, with their weights

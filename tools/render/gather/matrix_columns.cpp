@@ -39,8 +39,8 @@ Columns columnsAt(const GatherInputs& in, std::span<const SurfacePoint> receiver
   Columns columns(in.vpls.size(), receivers.size());
   const auto running = in.progress.before(phase, receivers.size());
   parallelFor(receivers.size(), 1, [&](size_t row) {
-    const Bsdf bsdf(in.rays.scene(), receivers[row]);
-    const ShadowTest test(in.rays, in.vpls, bsdf);
+    const Bsdf bsdf(in.accel.scene(), receivers[row]);
+    const ShadowTest test(in.accel, in.vpls, bsdf);
     for (size_t i = 0; i < columns.size(); ++i) columns.set(i, row, test.of(i).radiance);
     if (in.progress) in.progress(1);
   });
@@ -91,7 +91,7 @@ void ClusterDraws::add(std::span<const uint32_t> cluster, std::span<const double
 Gathered ClusterDraws::gather(const GatherInputs& in, const TileReceivers& tile, size_t i) const {
   Gathered out;
   const std::span<const VplDraw> draws = of(tile, tile.firstSample + i / tile.pixels);
-  const ShadowTest test(in.rays, in.vpls, *tile.bsdf[i], tile.groupsOf(i));
+  const ShadowTest test(in.accel, in.vpls, *tile.bsdf[i], tile.groupsOf(i));
   for (const VplDraw& d : draws) test.add(d.index, d.weight, out);
   out.cut = static_cast<uint32_t>(draws.size());
   return out;

@@ -9,13 +9,13 @@ namespace bnvpl {
 // Samples VPLs with a VplSampler. Thread-safe.
 class PointGather {
  public:
-  PointGather(const RayScene& rays, const VplLights& vpls, const LightTree& tree)
-      : rays_(rays), vpls_(vpls), sampler_(tree) {}
+  PointGather(const Accelerator& accel, const VplLights& vpls, const LightTree& tree)
+      : accel_(accel), vpls_(vpls), sampler_(tree) {}
   Gathered operator()(const Bsdf& bsdf, unsigned draws, Rng& rng,
                       const GroupSink& groups = {}) const;
 
  private:
-  const RayScene& rays_;
+  const Accelerator& accel_;
   const VplLights& vpls_;
   VplSampler sampler_;
 };

@@ -17,13 +17,13 @@ inline void addTransfer(const VplLights& vpls, size_t i, const VplTransfer& c, f
 // Borrows all three. `groups` receives the radiance by light group.
 class ShadowTest {
  public:
-  ShadowTest(const RayScene& rays, const VplLights& vpls, const Bsdf& bsdf,
+  ShadowTest(const Accelerator& accel, const VplLights& vpls, const Bsdf& bsdf,
              const GroupSink& groups = {})
-      : rays_(rays),
+      : accel_(accel),
         vpls_(vpls),
         bsdf_(bsdf),
         groups_(groups),
-        from_(rays.offsetOrigin(bsdf.point().position, bsdf.point().ng)) {}
+        from_(accel.offsetOrigin(bsdf.point().position, bsdf.point().ng)) {}
 
   Gathered of(size_t i) const {
     Gathered out;
@@ -36,12 +36,13 @@ class ShadowTest {
     VplTransfer c;
     if (!unoccludedTransfer(vpls_, i, bsdf_, c)) return;
     ++out.shadowRays;
-    if (rays_.occluded(from_, vpls_.position[i])) return;
+    out.sampledPairs += c.sampled;
+    if (accel_.occluded(from_, vpls_.position[i])) return;
     addTransfer(vpls_, i, c, weight, groups_, out);
   }
 
  private:
-  const RayScene& rays_;
+  const Accelerator& accel_;
   const VplLights& vpls_;
   const Bsdf& bsdf_;
   GroupSink groups_;

@@ -12,15 +12,16 @@
 #include "tools/render/film/integrator_interface.h"
 #include "tools/render/gather/gather.h"
 #include "tools/render/pixel_filter.h"
+#include "transport/accelerator.h"
 #include "transport/lights.h"
-#include "transport/rays.h"
+#include "transport/virtual_light_kinds.h"
 #include "transport/vpl_groups.h"
 
 namespace bnvpl {
 
 // Inputs of a method, borrowed until the image is done.
 struct IntegratorInputs {
-  const RayScene& rays;
+  const Accelerator& accel;
   const LightSet& lights;
   const VplTable& lit;  // stage Lit; empty unless the method needs VPLs
   uint64_t seed;
@@ -32,7 +33,7 @@ struct IntegratorInputs {
   VplGroups litGroups = {};    // the VPLs' flux by these groups; empty without them
 
   uint64_t pixels() const {
-    const Film& film = rays.scene().film;
+    const Film& film = accel.scene().film;
     return trial ? trial->pixels : uint64_t{film.width} * film.height;
   }
 };
@@ -53,6 +54,12 @@ inline constexpr OptionKey<std::string> kFirefliesKey = firefliesOption({}).key(
 // Whether fireflies are redistributed; false for methods without the option.
 inline bool redistributesFireflies(const Values& options) {
   return options.has(kFirefliesKey) && options[kFirefliesKey] == "redistribute";
+}
+
+inline constexpr OptionKey<std::string> kLightKindKey{"light"};
+// The kind of light of a run; the default kind for methods without the option.
+inline LightKind lightKindOf(const Values& options) {
+  return options.has(kLightKindKey) ? lightKindNamed(options[kLightKindKey]) : LightKind{};
 }
 
 // The gather of a run; null where nothing is gathered.

@@ -10,9 +10,9 @@ void PathTracer::render(const TileSamples& tile) const {
 }
 
 RadianceSample PathTracer::trace(const CameraSample& sample, Rng& rng) const {
-  return tracePath(rays_, lights_, sample, only_, indirect_, rng,
+  return tracePath(accel_, lights_, sample, only_, indirect_, rng,
                    [&](const Bsdf& bsdf, Vec3 throughput, bool directOnly, RadianceSample& out) {
-                     addLeavingLight(rays_, lights_, bsdf, throughput, {maxBounces_, directOnly},
+                     addLeavingLight(accel_, lights_, bsdf, throughput, {maxBounces_, directOnly},
                                      nullptr, rng, out.direct, out.indirect,
                                      {sample.groups.direct(), sample.groups.indirect()});
                    });

@@ -20,15 +20,15 @@ class PathTracer {
  public:
   // `indirect`: whether to add indirect light at points that the camera sees directly. If not, the
   // LightTracer does.
-  PathTracer(const RayScene& rays, const LightSet& lights, unsigned maxBounces, Only only,
+  PathTracer(const Accelerator& accel, const LightSet& lights, unsigned maxBounces, Only only,
              bool indirect = true)
-      : rays_(rays), lights_(lights), maxBounces_(maxBounces), only_(only), indirect_(indirect) {}
+      : accel_(accel), lights_(lights), maxBounces_(maxBounces), only_(only), indirect_(indirect) {}
   void render(const TileSamples& tile) const;
 
  private:
   RadianceSample trace(const CameraSample& sample, Rng& rng) const;
 
-  const RayScene& rays_;
+  const Accelerator& accel_;
   const LightSet& lights_;
   unsigned maxBounces_;
   Only only_;

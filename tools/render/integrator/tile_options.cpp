@@ -12,33 +12,33 @@ void addDirectLight(const IntegratorInputs& in, const Values& options, const Fil
     const uint64_t raysOfTile = uint64_t{kTileSide} * kTileSide * options[kSppOption] * lightRays;
     out.lightRays = lightRays;
     out.lights = std::make_unique<const TileLightSampler>(
-        in.rays, in.lights, [filmRays](size_t pixel) { return filmRays.point(pixel); }, raysOfTile,
+        in.accel, in.lights, [filmRays](size_t pixel) { return filmRays.point(pixel); }, raysOfTile,
         in.seed, in.trial);
     out.visibleEmission =
-        std::make_unique<const VisibleEmission>(in.rays, in.lights, in.filter, film);
+        std::make_unique<const VisibleEmission>(in.accel, in.lights, in.filter, film);
   }
   if (options[kDirectSamplesOption] == 1) return;
-  out.directSamples.emplace(in.rays, in.lights, in.filter, out.visibleEmission.get(),
+  out.directSamples.emplace(in.accel, in.lights, in.filter, out.visibleEmission.get(),
                             out.spatialLights, static_cast<unsigned>(options[kDirectSamplesOption]),
                             in.only == Only::Direct);
 }
 
 std::unique_ptr<const Caustics> makeCaustics(const IntegratorInputs& in, uint64_t photons,
                                              uint64_t raysOfPixel, unsigned bounces) {
-  if (photons == 0 || in.only == Only::Direct || !hasSpecularLobes(in.rays.scene()) ||
+  if (photons == 0 || in.only == Only::Direct || !hasSpecularLobes(in.accel.scene()) ||
       !in.lights.hasPower()) {
     return {};
   }
   constexpr uint64_t kTrialPhotons = 1 << 18;  // limit for a cost estimate
   const uint64_t sent = unitsToTry(in.trial, photons, kTrialPhotons);
   const CostTrial::Part part(in.trial, static_cast<double>(photons) / static_cast<double>(sent));
-  return std::make_unique<const Caustics>(in.rays, in.lights, in.filter, sent,
+  return std::make_unique<const Caustics>(in.accel, in.lights, in.filter, sent,
                                           static_cast<float>(raysOfPixel), bounces, in.seed,
                                           in.groups, in.progress);
 }
 
 ControlVariateFn makeControlVariate(const IntegratorInputs& in, const PrimaryPoints& film) {
-  const auto control = std::make_shared<const PixelControlVariate>(in.rays, in.lights, in.filter,
+  const auto control = std::make_shared<const PixelControlVariate>(in.accel, in.lights, in.filter,
                                                                    film, in.lit, in.litGroups);
   return [control](const TileSamples& tile, std::span<const SpecularPath> paths) {
     control->apply(tile, paths);
@@ -49,7 +49,7 @@ SampleAllocation allocationOf(const IntegratorInputs& in, const Values& options,
                               const TileIntegrator& integrator) {
   if (!options.has(kAllocateKey) || !options[kAllocateKey]) return {};
   return findAllocation(
-      in.rays.scene(), in.filter, in.seed, options[kSppOption], in.progress,
+      in.accel.scene(), in.filter, in.seed, options[kSppOption], in.progress,
       [&](const TileSamples& tile) { return integrator.render(tile, SampleAllocation{}); });
 }
 

@@ -19,9 +19,9 @@ float samplesPerArea(const Scene& scene, const SurfacePoint& seen, Vec3 origin) 
          (depth * depth * depth * pixelAreaAtUnitDepth(scene.camera, scene.film));
 }
 
-std::optional<FilmConnection> connectToFilm(const RayScene& rays, const SurfacePoint& vertex,
+std::optional<FilmConnection> connectToFilm(const Accelerator& accel, const SurfacePoint& vertex,
                                             Vec3 lens, const PixelFilter& filter) {
-  const Scene& scene = rays.scene();
+  const Scene& scene = accel.scene();
   const Film& film = scene.film;
   const RasterPoint at = projectToFilm(scene.camera, film, vertex.position, lens);
   const auto width = static_cast<float>(film.width), height = static_cast<float>(film.height);
@@ -36,8 +36,8 @@ std::optional<FilmConnection> connectToFilm(const RayScene& rays, const SurfaceP
   // Traces a camera ray, so that the vertex scatters as for a camera path. Its hit is the vertex if
   // the triangle is the same or, at an edge, if it lies within the rounding of an offset origin.
   SurfacePoint seen;
-  if (!rays.closestHit(origin, way / length(way), seen)) return {};
-  const Vec3 tolerance = rays.offsetOrigin(vertex.position, vertex.ng) - vertex.position;
+  if (!accel.closestHit(origin, way / length(way), seen)) return {};
+  const Vec3 tolerance = accel.offsetOrigin(vertex.position, vertex.ng) - vertex.position;
   if (seen.triangle != vertex.triangle &&
       lengthSquared(seen.position - vertex.position) > 4.0f * lengthSquared(tolerance)) {
     return {};

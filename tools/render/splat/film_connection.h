@@ -7,7 +7,7 @@
 
 #include "tools/render/pixel_filter.h"
 #include "tools/render/splat/splat.h"
-#include "transport/rays.h"
+#include "transport/accelerator.h"
 
 namespace bnvpl {
 
@@ -22,7 +22,7 @@ struct FilmConnection {
 // it is not seen directly from there, the BSDF is 0, or no pixel's filter covers its place. A
 // photon of flux F adds F * value * perArea to the radiance of the pixels, times their filters'
 // values.
-std::optional<FilmConnection> connectToFilm(const RayScene& rays, const SurfacePoint& vertex,
+std::optional<FilmConnection> connectToFilm(const Accelerator& accel, const SurfacePoint& vertex,
                                             Vec3 lens, const PixelFilter& filter);
 
 // Calls fn(pixel, value) for the pixels whose filter is not 0 at a place on the film.

@@ -11,9 +11,9 @@ namespace bnvpl {
 class FilmRays {
  public:
   // `spatialLights` may be null. Borrows all but the filter.
-  FilmRays(const RayScene& rays, const LightSet& lights, const PixelFilter& filter,
+  FilmRays(const Accelerator& accel, const LightSet& lights, const PixelFilter& filter,
            const SpatialLightSampler* spatialLights, uint64_t seed)
-      : rays_(rays),
+      : accel_(accel),
         lights_(lights),
         filter_(filter),
         spatialLights_(spatialLights),
@@ -22,12 +22,12 @@ class FilmRays {
   // The shading point; its triangle is kNone if there is none. `emission` receives the emission on
   // the camera path, mean of the channels.
   SurfacePoint point(size_t pixel, float* emission = nullptr) const {
-    const uint32_t width = rays_.scene().film.width;
+    const uint32_t width = accel_.scene().film.width;
     Rng rng(key_, pixel);
     const float x = rng.next(), y = rng.next();
     RadianceSample sample;
     SpecularPath path = traceCameraPath(
-        rays_, lights_, static_cast<uint32_t>(pixel % width), static_cast<uint32_t>(pixel / width),
+        accel_, lights_, static_cast<uint32_t>(pixel % width), static_cast<uint32_t>(pixel / width),
         {filter_.sample({x, y}).at}, rng, sample, {nullptr, spatialLights_});
     if (!path.rough) path.hit.triangle = kNone;
     if (emission) *emission = mean(sample.direct);
@@ -35,7 +35,7 @@ class FilmRays {
   }
 
   PrimaryPoints all() const {
-    const Film& size = rays_.scene().film;
+    const Film& size = accel_.scene().film;
     PrimaryPoints film{size.width, size.height, {}, {}};
     film.points.resize(size_t{film.width} * film.height);
     film.emission.resize(film.points.size());
@@ -45,7 +45,7 @@ class FilmRays {
   }
 
  private:
-  const RayScene& rays_;
+  const Accelerator& accel_;
   const LightSet& lights_;
   PixelFilter filter_;
   const SpatialLightSampler* spatialLights_;

@@ -80,13 +80,13 @@ TileIntegrator::ShadingPoints TileIntegrator::traceCameraPaths(const TileSamples
     CameraSample& s = tile.samples[i];
     const auto pixel = static_cast<uint32_t>(i % tile.pixels);
     Rng rng = Rng::stratified(random64(tile.key, pixel, kDimCameraPath), sampleIndexOf(tile, i));
-    out.paths[i] = traceCameraPath(rays_, lights_, s.origin, s.direction, s.weight, rng, s.radiance,
-                                   specularLights, s.groups);
+    out.paths[i] = traceCameraPath(accel_, lights_, s.origin, s.direction, s.weight, rng,
+                                   s.radiance, specularLights, s.groups);
     if (parts_.visibleEmission && !parts_.directSamples)
       parts_.visibleEmission->average(s.radiance, 1, tile, pixel, sampleIndexOf(tile, i),
                                       specularLights, s.groups);
     if (!out.paths[i].rough) continue;
-    out.bsdf[i] = &out.bsdfs.emplace_back(rays_.scene(), out.paths[i].hit);
+    out.bsdf[i] = &out.bsdfs.emplace_back(accel_.scene(), out.paths[i].hit);
     describeShadingPoint(*out.bsdf[i], s.radiance);
   }
   return out;
@@ -100,15 +100,15 @@ Vec3 TileIntegrator::directAt(const Bsdf& bsdf, const LearnedLight& learned, uin
   const LightSampling sampling{learned, LightChoice::Each, {}, groups};
   if (!learned.strata) {
     const BsdfRays others{bsdf, static_cast<float>(parts_.raysEach)};
-    return directLight(rays_, lights_, reflected, sampling, others, LightNumbers(rng));
+    return directLight(accel_, lights_, reflected, sampling, others, LightNumbers(rng));
   }
   const LightNumbers numbers(sampleIndex * parts_.lightRays, key);
-  if (!parts_.rays) return directLight(rays_, lights_, reflected, sampling, NoRays{}, numbers);
+  if (!parts_.rays) return directLight(accel_, lights_, reflected, sampling, NoRays{}, numbers);
   const Directions directions = parts_.rays->directionsFrom(bsdf);
   const auto rayPdf = [&](Vec3 wi) {
     return static_cast<float>(parts_.raysEach) * directions.pdf(wi);
   };
-  return directLight(rays_, lights_, reflected, sampling, rayPdf, numbers);
+  return directLight(accel_, lights_, reflected, sampling, rayPdf, numbers);
 }
 
 // `meanDirect`: direct light, the mean over the tile; the noise of VPLs counts relative to all
@@ -179,7 +179,7 @@ class TileIntegrator::TileIndirectRays {
   TileIndirectRays(const TileIntegrator& integrator, const TileSamples& tile,
                    const ShadingPoints& points, const LearnedLight& learned)
       : parts_(integrator.parts_),
-        rays_(integrator.rays_),
+        accel_(integrator.accel_),
         tile_(tile),
         points_(points),
         learned_(learned),
@@ -267,7 +267,7 @@ class TileIntegrator::TileIndirectRays {
       group.push_back({&directions_[points_.indexOf(i)], found_[i].rays, found_[i].vertices,
                        found_[i].vertexGroups.data(), reusedGroups(i)});
     }
-    reuseRays_ += reuseVertices(rays_, group, tile_.groups);
+    reuseRays_ += reuseVertices(accel_, group, tile_.groups);
     for (size_t k = 0; k < members.size(); ++k) {
       const Vec3 throughput = points_.paths[members[k]].throughput;
       reused_[members[k]] = {throughput * group[k].radiance,
@@ -318,7 +318,7 @@ class TileIntegrator::TileIndirectRays {
   }
 
   const TileParts& parts_;
-  const RayScene& rays_;
+  const Accelerator& accel_;
   const TileSamples& tile_;
   const ShadingPoints& points_;
   const LearnedLight& learned_;

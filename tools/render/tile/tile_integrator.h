@@ -46,8 +46,8 @@ struct TileParts {
 // Immutable and thread-safe.
 class TileIntegrator {
  public:
-  TileIntegrator(const RayScene& rays, const LightSet& lights, TileParts parts, Only only)
-      : rays_(rays), lights_(lights), parts_(std::move(parts)), only_(only) {}
+  TileIntegrator(const Accelerator& accel, const LightSet& lights, TileParts parts, Only only)
+      : accel_(accel), lights_(lights), parts_(std::move(parts)), only_(only) {}
   // Fills in the radiance of the tile's samples. Without a marginal cost, parts have the numbers of
   // samples that options ask for. Returns the mean cost of a sample, in the units of cost::.
   double render(const TileSamples& tile, const SampleAllocation& allocation) const;
@@ -64,7 +64,7 @@ class TileIntegrator {
   double addRays(const TileSamples& tile, const ShadingPoints& points, const LearnedLight& learned,
                  const SampleAllocation& allocation, Vec3 meanDirect) const;
 
-  const RayScene& rays_;
+  const Accelerator& accel_;
   const LightSet& lights_;
   TileParts parts_;
   Only only_;

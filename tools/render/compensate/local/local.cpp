@@ -24,7 +24,7 @@ constexpr std::array kCounters{
     Counter{"locallights", "local lights", "local virtual lights of the sample's block"}};
 
 struct Blocks {
-  const RayScene& rays;
+  const Accelerator& accel;
   UncoveredShare share;
   uint32_t side;
   LocalLightOptions options;
@@ -63,7 +63,7 @@ size_t Blocks::light(std::span<const size_t> members, const TileReceivers& tile,
                      const VertexLights& lights, uint64_t key, std::span<Gathered> out) const {
   std::vector<const Bsdf*> receivers;
   for (const size_t i : members) receivers.push_back(tile.bsdf[i]);
-  const LocalLights local(rays, lights, share, options, receivers, key, tile.groups);
+  const LocalLights local(accel, lights, share, options, receivers, key, tile.groups);
   for (size_t k = 0; k < members.size(); ++k) {
     const size_t i = members[k];
     out[i] = local.at(*receivers[k], random64(key, k, 2), tile.groupsOf(i));
@@ -78,7 +78,7 @@ Compensation make(const CompensateInputs& in, const Values& options) {
   return {
       .lookUp = {},
       .uncovered = {},
-      .tile = Blocks{in.rays,
+      .tile = Blocks{in.accel,
                      {INFINITY, size, in.light},
                      static_cast<uint32_t>(options[kBlockOption]),
                      {static_cast<uint32_t>(options[kShootersOption]),

@@ -20,10 +20,10 @@ constexpr float kUniformPdf = 1.0f / (2.0f * kPi);  // over a hemisphere
 
 }  // namespace
 
-LocalLights::LocalLights(const RayScene& rays, const VertexLights& vertexLights,
+LocalLights::LocalLights(const Accelerator& accel, const VertexLights& vertexLights,
                          const UncoveredShare& share, const LocalLightOptions& options,
                          std::span<const Bsdf* const> receivers, uint64_t key, uint32_t groups)
-    : rays_(rays),
+    : accel_(accel),
       vertexLights_(vertexLights),
       share_(share),
       options_(options),
@@ -39,22 +39,22 @@ LocalLights::LocalLights(const RayScene& rays, const VertexLights& vertexLights,
 }
 
 void LocalLights::shootFrom(const Bsdf& shooter, uint64_t key) {
-  std::array<Ray, RayScene::kBatch> batch;
-  std::array<SurfacePoint, RayScene::kBatch> hits;
+  std::array<Ray, Accelerator::kBatch> batch;
+  std::array<SurfacePoint, Accelerator::kBatch> hits;
   std::vector<Rng> numbers;
-  for (uint32_t begin = 0; begin < options_.rays; begin += RayScene::kBatch) {
-    const uint32_t end = std::min<uint32_t>(options_.rays, begin + RayScene::kBatch);
+  for (uint32_t begin = 0; begin < options_.rays; begin += Accelerator::kBatch) {
+    const uint32_t end = std::min<uint32_t>(options_.rays, begin + Accelerator::kBatch);
     numbers.clear();
     for (uint32_t k = begin; k < end; ++k) {
       Rng rng = Rng::stratified(key, k);
       BsdfSample sample;
-      if (!scatter(rays_, shooter, LobeGroup::Rough, Transport::Radiance, rng, sample,
+      if (!scatter(accel_, shooter, LobeGroup::Rough, Transport::Radiance, rng, sample,
                    batch[numbers.size()]))
         continue;
       numbers.push_back(rng);
     }
     raysSent_ += numbers.size();
-    rays_.closestHits({batch.data(), numbers.size()}, hits);
+    accel_.closestHits({batch.data(), numbers.size()}, hits);
     for (size_t k = 0; k < numbers.size(); ++k)
       if (hits[k].triangle != kNone) addLight(hits[k], numbers[k]);
   }
@@ -104,7 +104,7 @@ void LocalLights::findRadiance(const SurfacePoint& hit, Rng& rng, Light& light,
   SurfacePoint point = hit;
   Vec3 throughput(1.0f);
   for (unsigned vertices = 1;; ++vertices) {
-    const Bsdf bsdf(rays_.scene(), point);
+    const Bsdf bsdf(accel_.scene(), point);
     if (!bsdf.hasRough()) return;
     const bool first = vertices == 1;
     if (first) {
@@ -119,7 +119,7 @@ void LocalLights::findRadiance(const SurfacePoint& hit, Rng& rng, Light& light,
         strata.all && lightRays > 1 ? LightNumbers::sequence(rng) : LightNumbers(rng);
     const LightSampling sampling{
         {strata.all ? &strata : nullptr, lightRays}, LightChoice::One, {}, sink};
-    light.radiance += throughput * directLight(rays_, vertexLights_.lights, Reflected{bsdf},
+    light.radiance += throughput * directLight(accel_, vertexLights_.lights, Reflected{bsdf},
                                                sampling, NoRays{}, numbers);
     const Gathered vpls = vertexLights_.vpls(bsdf, first ? kFirstDraws : kLaterDraws, rng, sink);
     light.radiance += throughput * vpls.radiance;
@@ -128,11 +128,11 @@ void LocalLights::findRadiance(const SurfacePoint& hit, Rng& rng, Light& light,
     BsdfSample sample;
     Ray next;
     if (vertices == kMaxVertices ||
-        !scatter(rays_, bsdf, LobeGroup::Rough, Transport::Radiance, rng, sample, next))
+        !scatter(accel_, bsdf, LobeGroup::Rough, Transport::Radiance, rng, sample, next))
       return;
     SurfacePoint found;
     ++raysSent_;
-    if (!rays_.closestHit(next.origin, next.direction, found)) return;
+    if (!accel_.closestHit(next.origin, next.direction, found)) return;
     if (!(rng.next() < share_.at(found.distance))) return;
     throughput *= sample.weight;
     point = found;
@@ -156,7 +156,8 @@ Gathered LocalLights::at(const Bsdf& receiver, uint64_t key, const GroupSink& gr
     Vec3 transfer;
     if (light.radius2 > 0.0f) {
       transfer =
-          sphericalTransfer({way, light.normal, light.radius2}, receiver, random64(key, i, 0)) *
+          sphericalTransfer({way, light.normal, light.radius2}, receiver, random64(key, i, 0))
+              .value *
           factor;
     } else {
       transfer = receiver.eval(LobeGroup::Rough, direction) *

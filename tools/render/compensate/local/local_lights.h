@@ -32,9 +32,9 @@ class LocalLights {
  public:
   // Borrows the arguments. `share`: s. `receivers`: those of the block, at least one. `key`: of its
   // random numbers.
-  LocalLights(const RayScene& rays, const VertexLights& vertexLights, const UncoveredShare& share,
-              const LocalLightOptions& options, std::span<const Bsdf* const> receivers,
-              uint64_t key, uint32_t groups);
+  LocalLights(const Accelerator& accel, const VertexLights& vertexLights,
+              const UncoveredShare& share, const LocalLightOptions& options,
+              std::span<const Bsdf* const> receivers, uint64_t key, uint32_t groups);
 
   size_t size() const { return lights_.size(); }
   size_t raysSent() const { return raysSent_; }
@@ -58,7 +58,7 @@ class LocalLights {
   void addLight(const SurfacePoint& hit, Rng& rng);
   void findRadiance(const SurfacePoint& hit, Rng& rng, Light& light, std::span<Vec3> groups);
 
-  const RayScene& rays_;
+  const Accelerator& accel_;
   const VertexLights& vertexLights_;
   const UncoveredShare& share_;
   const LocalLightOptions& options_;

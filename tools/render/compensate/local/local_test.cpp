@@ -96,11 +96,6 @@ TEST(Local, CountsTheLightsOfABlockAndWhatTheyRestore) {
   EXPECT_NEAR(result.stats.own[1] / lights({}), 1.0, 0.2);
 }
 
-TEST(Local, SameBytesForAnyThreadsAndShards) {
-  expectSameBytesForAnyThreads("all", with(kLocal, {{"clamp", "2"}}));
-  expectSameBytesInShards("all", with(kLocal, {{"clamp", "2"}}));
-}
-
 // In the furnace every surface has the same light; the other scene has one bounce between two
 // patches. The tolerance to paths is the noise of the VPLs, which are the same for all.
 TEST(Local, KeepsTheEnergy) {

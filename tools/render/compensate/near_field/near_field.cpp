@@ -39,13 +39,13 @@ float areaOf(uint32_t i, const Coverage& coverage) {
 
 }  // namespace
 
-NearField::NearField(const VplTable& lit, const RayScene& rays, float clamp, LightKind kind,
+NearField::NearField(const VplTable& lit, const Accelerator& accel, float clamp, LightKind kind,
                      const VplGroups& groups)
     : lit_(lit),
       coverage_(lit.position, lit.normal,
                 scaled(lit.radius,
                        lit.reach > 0.0 ? static_cast<float>(lit.reach) : kReachWithoutPhotons),
-                rays),
+                accel),
       kind_(kind),
       clampRadius_(scaled(lit.radius, clamp)),
       groups_(groups.groups),
@@ -94,7 +94,7 @@ namespace {
 
 Compensation make(const CompensateInputs& in, const Values&) {
   const auto field =
-      std::make_shared<const NearField>(in.lit, in.rays, in.clamp, in.light, in.groups);
+      std::make_shared<const NearField>(in.lit, in.accel, in.clamp, in.light, in.groups);
   return {[field](std::span<const SurfacePoint> hits, std::span<ReachGrid::Lookup> coverLookup) {
             field->coverage().lookUp(hits, coverLookup);
           },

@@ -16,7 +16,7 @@ namespace bnvpl {
 class NearField {
  public:
   // Borrows the table and the scene. `clamp`, `kind` and `groups`: those of makeVplLights().
-  NearField(const VplTable& lit, const RayScene& rays, float clamp, LightKind kind = {},
+  NearField(const VplTable& lit, const Accelerator& accel, float clamp, LightKind kind = {},
             const VplGroups& groups = {});
 
   // `coverLookup`: the result of coverage().lookUp() for the point.

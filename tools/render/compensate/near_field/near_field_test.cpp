@@ -115,7 +115,7 @@ TEST(NearField, VplsKnowTheRadianceAroundThem) {
   const World world("furnace/scene.toml");  // rho = 0.5
   const VplTable lit = litVpls(world);
   const float clamp = 1.0f;
-  const NearField nearField(lit, world.rays, clamp);
+  const NearField nearField(lit, world.accel, clamp);
   double sum = 0.0;
   int known = 0;
   Rng rng(streamKey(1, Stream::PixelSamples), 0);
@@ -127,7 +127,7 @@ TEST(NearField, VplsKnowTheRadianceAroundThem) {
     const Vec3 face = k % 3 == 0   ? Vec3{side, u, v}
                       : k % 3 == 1 ? Vec3{u, side, v}
                                    : Vec3{u, v, side};
-    if (!world.rays.closestHit({0.5f, 0.5f, 0.5f}, normalize(face), hit)) continue;
+    if (!world.accel.closestHit({0.5f, 0.5f, 0.5f}, normalize(face), hit)) continue;
     const float distance = 0.8f * clamp * lit.radius[0];
     const Uncovered uncovered = uncoveredAt(nearField, hit, distance, rng);
     if (!uncovered.multiBounceRadiance) continue;
@@ -148,7 +148,7 @@ TEST(NearField, RadianceUsesTheCoveredAreaAndSliversAreUnknown) {
     addSquare(scene, {-2, 0, width / 2}, {4, 0, 0}, {0, 0, -width}, lambert(Vec3(0.5f)));
     addSquare(scene, {-2, -3, 2}, {4, 0, 0}, {0, 0, -4}, lambert(Vec3(0.5f)));  // far below
     finishScene(scene);
-    const RayScene rays(scene);
+    const Accelerator accel(scene);
     VplTable lit;
     lit.stage = VplStage::Lit;
     lit.reach = 1.0;
@@ -162,9 +162,9 @@ TEST(NearField, RadianceUsesTheCoveredAreaAndSliversAreUnknown) {
     lit.photons = {10};
     lit.relativeError = {0.1f};
     SurfacePoint hit;
-    EXPECT_TRUE(rays.closestHit({0.3f, 1.0f, 0.0f}, {0, -1, 0}, hit));
+    EXPECT_TRUE(accel.closestHit({0.3f, 1.0f, 0.0f}, {0, -1, 0}, hit));
     Rng rng(streamKey(1, Stream::PixelSamples), 0);
-    const Uncovered uncovered = uncoveredAt(NearField(lit, rays, 2.0f), hit, 1.0f, rng);
+    const Uncovered uncovered = uncoveredAt(NearField(lit, accel, 2.0f), hit, 1.0f, rng);
     EXPECT_NEAR(uncovered.share, 0.75f, 1e-5f);  // 1 - (distance / clamp)^2
     return uncovered.multiBounceRadiance;
   };

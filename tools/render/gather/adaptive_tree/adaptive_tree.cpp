@@ -25,7 +25,7 @@ constexpr std::array kCounters{
 class AdaptiveTree {
  public:
   AdaptiveTree(const GatherInputs& in, double split)
-      : rays_(in.rays),
+      : accel_(in.accel),
         vpls_(in.vpls),
         tree_(buildLightTree(in.vpls, in.seed, LightSplit::Orientation)),
         // The quality is below the threshold where the deviation is above this.
@@ -41,7 +41,7 @@ class AdaptiveTree {
     Gathered out;
     if (tree_.nodes.empty()) return out;
     const Vec3 at = bsdf.point().position, normal = bsdf.point().ns;
-    const ShadowTest test(rays_, vpls_, bsdf, groups);
+    const ShadowTest test(accel_, vpls_, bsdf, groups);
     const double allowed = maxDeviation_ * arriving(at);
     thread_local std::vector<uint32_t> open;  // reused between calls to avoid allocations
     open.assign(1, 0);
@@ -120,7 +120,7 @@ class AdaptiveTree {
     return sum;
   }
 
-  const RayScene& rays_;
+  const Accelerator& accel_;
   const VplLights& vpls_;
   LightTree tree_;
   double maxDeviation_;

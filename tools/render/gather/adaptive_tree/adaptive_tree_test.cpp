@@ -19,11 +19,6 @@ TEST(AdaptiveTree, WithASingleDrawToo) {
   EXPECT_EQ(counted("treesplits", {{"split", "0"}}), 0.0);
 }
 
-TEST(AdaptiveTree, IsTheSameForAnyThreadsAndShards) {
-  expectSameBytesForAnyThreads("adaptive-tree");
-  expectSameBytesInShards("adaptive-tree");
-}
-
 TEST(AdaptiveTree, SplitToSingleVplsItIsTheSumOverAll) {
   expectSumOverAll("adaptive-tree", {{"split", "1"}});
   EXPECT_EQ(counted("importances", {{"split", "1"}}), 0.0);

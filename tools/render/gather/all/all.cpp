@@ -7,17 +7,18 @@ namespace bnvpl::methods::gather::all {
 
 namespace {
 
-Gathered gatherAll(const RayScene& rays, const VplLights& vpls, const Bsdf& bsdf,
+Gathered gatherAll(const Accelerator& accel, const VplLights& vpls, const Bsdf& bsdf,
                    const GroupSink& groups) {
   Gathered out;
   out.cut = static_cast<uint32_t>(vpls.size());
-  const Vec3 from = rays.offsetOrigin(bsdf.point().position, bsdf.point().ng);
+  const Vec3 from = accel.offsetOrigin(bsdf.point().position, bsdf.point().ng);
   RgbSum total, clamped;
   VplTransfer c;
   for (size_t i = 0; i < vpls.size(); ++i) {
     if (!unoccludedTransfer(vpls, i, bsdf, c)) continue;
     ++out.shadowRays;
-    if (rays.occluded(from, vpls.position[i])) continue;
+    out.sampledPairs += c.sampled;
+    if (accel.occluded(from, vpls.position[i])) continue;
     const Vec3 light = c.transfer * vpls.intensity[i];
     total.add(light);
     clamped.add(light * c.clampLoss);
@@ -29,9 +30,10 @@ Gathered gatherAll(const RayScene& rays, const VplLights& vpls, const Bsdf& bsdf
 }
 
 Gather make(const GatherInputs& in, const Values&) {
-  return gatherEach([&rays = in.rays, &vpls = in.vpls](const Bsdf& bsdf, const GroupSink& groups) {
-    return gatherAll(rays, vpls, bsdf, groups);
-  });
+  return gatherEach(
+      [&accel = in.accel, &vpls = in.vpls](const Bsdf& bsdf, const GroupSink& groups) {
+        return gatherAll(accel, vpls, bsdf, groups);
+      });
 }
 
 }  // namespace

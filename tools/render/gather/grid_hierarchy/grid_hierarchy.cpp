@@ -22,7 +22,7 @@ constexpr std::array kCounters{
 class Hierarchy {
  public:
   Hierarchy(const GatherInputs& in, float alpha)
-      : rays_(in.rays),
+      : accel_(in.accel),
         vpls_(in.vpls),
         levels_(makeLevels(in.vpls, alpha, streamKey(in.seed, Stream::GridMembers))) {}
 
@@ -42,7 +42,7 @@ class Hierarchy {
 
   void addLevel(size_t l, const Bsdf& bsdf, uint64_t key, Gathered& out, Sums& sums) const {
     const Level& level = levels_[l];
-    const Vec3 at = bsdf.point().position, from = rays_.offsetOrigin(at, bsdf.point().ng);
+    const Vec3 at = bsdf.point().position, from = accel_.offsetOrigin(at, bsdf.point().ng);
     level.cells.forWithin(at, level.to, [&](uint32_t i) {
       const float share = level.share(length(level.lights.position[i] - at));
       if (!(share > 0.0f)) return;
@@ -53,14 +53,14 @@ class Hierarchy {
       ++out.shadowRays;
       const uint64_t pick = random64(key, i, uint32_t(l)) % kMembers;
       const uint32_t tested = l > 0 ? level.members[i * kMembers + pick] : i;
-      if (rays_.occluded(from, vpls_.position[tested])) return;
+      if (accel_.occluded(from, vpls_.position[tested])) return;
       const Vec3 light = c.transfer * level.lights.intensity[i];
       sums.total.add(light, double{share});
       sums.clamped.add(light * c.clampLoss, double{share});
     });
   }
 
-  const RayScene& rays_;
+  const Accelerator& accel_;
   const VplLights& vpls_;
   std::vector<Level> levels_;
 };

@@ -15,11 +15,6 @@ TEST(GridHierarchy, HasAboutTheEnergyOfAllVpls) {
   expectEnergyInFurnaceAndOfOneBounce("grid-hierarchy", 0.05);
 }
 
-TEST(GridHierarchy, IsTheSameForAnyThreadsAndShards) {
-  expectSameBytesForAnyThreads("grid-hierarchy");
-  expectSameBytesInShards("grid-hierarchy");
-}
-
 TEST(GridHierarchy, WithNearVplsEverywhereIsTheSumOverAll) {
   expectSumOverAll("grid-hierarchy", {{"alpha", "1000000"}});
   EXPECT_EQ(gridLights({{"alpha", "1000000"}}), 0.0);

@@ -25,7 +25,7 @@ constexpr std::array kCounters{
 Gathered gatherPairs(const GatherInputs& in, const PairPlan& plan, const Bsdf& bsdf) {
   Gathered out;
   RgbSum total, clamped;
-  const Vec3 from = in.rays.offsetOrigin(bsdf.point().position, bsdf.point().ng);
+  const Vec3 from = in.accel.offsetOrigin(bsdf.point().position, bsdf.point().ng);
   plan.forEachPair(bsdf.point(), [&](const LightPair& pair) {
     ++out.cut;
     out.counts[0] += pair.seen ? 1 : 0;
@@ -34,7 +34,7 @@ Gathered gatherPairs(const GatherInputs& in, const PairPlan& plan, const Bsdf& b
     if (!unoccludedTransfer(in.vpls, light.representative, bsdf, found)) return;
     if (!pair.seen) {
       ++out.shadowRays;
-      if (in.rays.occluded(from, in.vpls.position[light.representative])) return;
+      if (in.accel.occluded(from, in.vpls.position[light.representative])) return;
     }
     const Vec3 contribution = found.transfer * light.intensity;
     total.add(contribution);

@@ -8,10 +8,6 @@ namespace {
 // The light of clusters is that of one VPL, and rays of few receivers decide on the visibility.
 TEST(IlluminationCut, HasTheEnergyOfAllVpls) { expectEnergyOfAll("illumination-cut", 0.03, 2); }
 
-TEST(IlluminationCut, IsTheSameForAnyThreads) { expectSameBytesForAnyThreads("illumination-cut"); }
-
-TEST(IlluminationCut, IsTheSameInShards) { expectSameBytesInShards("illumination-cut"); }
-
 TEST(IlluminationCut, HasTheEnergyInFurnaceAndOfOneBounce) {
   expectEnergyInFurnaceAndOfOneBounce("illumination-cut", 0.02);
 }

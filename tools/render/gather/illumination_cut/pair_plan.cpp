@@ -49,7 +49,7 @@ class PairPlanner {
     LightPair pair;
   };
 
-  const Scene& scene() const { return in_.rays.scene(); }
+  const Scene& scene() const { return in_.accel.scene(); }
   // Receiver number k of a node's range.
   const SurfacePoint& receiver(size_t k) const { return points_[plan_.tree.order[k]]; }
 
@@ -85,7 +85,7 @@ class PairPlanner {
   // Light of a receiver from a coarse cut, channels added.
   float estimateAt(const SurfacePoint& point, const std::vector<uint32_t>& cut) const {
     const Bsdf bsdf(scene(), point);
-    const ShadowTest test(in_.rays, in_.vpls, bsdf);
+    const ShadowTest test(in_.accel, in_.vpls, bsdf);
     Gathered out;
     for (const uint32_t c : cut) {
       const LightNode& n = in_.tree.nodes[c];
@@ -176,7 +176,7 @@ class PairPlanner {
     const Vec3 d = in_.vpls.position[vpl] - p.position;
     if (dot(d, p.ns) <= 0.0f || dot(d, p.ng) <= 0.0f || dot(d, in_.vpls.normal[vpl]) >= 0.0f)
       return false;
-    return !in_.rays.occluded(in_.rays.offsetOrigin(p.position, p.ng), in_.vpls.position[vpl]);
+    return !in_.accel.occluded(in_.accel.offsetOrigin(p.position, p.ng), in_.vpls.position[vpl]);
   }
 
   const GatherInputs& in_;

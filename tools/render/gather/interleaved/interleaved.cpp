@@ -1,6 +1,7 @@
 // Interleaved sampling (Keller & Heidrich 2001; Wald et al. 2002): the pixels of an n x n pattern
 // gather different subsets of the VPLs, and a filter that stops at discontinuities averages them.
 #include <algorithm>
+#include <array>
 #include <memory>
 
 #include "tools/render/gather/rgb_sum.h"
@@ -15,6 +16,10 @@ constexpr auto kInterleaveOption =
                  "pixels along a side of the pattern, and of the filter that averages its subsets "
                  "of VPLs; 1: every pixel gathers all");
 constexpr auto kOptions = optionTable(kInterleaveOption);
+
+constexpr std::array kCounters{
+    Counter{"filterpixels", "pixels of the filter",
+            "pixels whose subsets of VPLs are averaged; 0 without a surface or a filter"}};
 
 // Pixels that see one surface: cosine of their normals, and difference of depths over the nearer.
 constexpr float kMinCosine = 0.9f, kMaxDepth = 0.05f;
@@ -72,13 +77,14 @@ size_t subsetOf(const TileReceivers& tile, size_t sample, uint32_t side) {
 // Every n^2-th VPL in the order of the light tree, which spreads a subset over the scene.
 Gathered gatherSubset(const GatherInputs& in, const Bsdf& bsdf, size_t first, size_t step) {
   Gathered out;
-  const ShadowTest test(in.rays, in.vpls, bsdf);
+  const ShadowTest test(in.accel, in.vpls, bsdf);
   RgbSum total, clamped;
   for (size_t k = first; k < in.tree.order.size(); k += step) {
     const Gathered one = test.of(in.tree.order[k]);
     total.add(one.radiance, double(step));
     clamped.add(one.clamped, double(step));
     out.shadowRays += one.shadowRays;
+    out.sampledPairs += one.sampledPairs;
     ++out.cut;
   }
   out.radiance = total.toVec3();
@@ -104,6 +110,7 @@ const GatherMethod method{
     .summary = "a subset of the VPLs for each pixel of a pattern, averaged by a filter",
     .options = kOptions,
     .make = make,
+    .counters = kCounters,
     .filmFilter = filmFilter,
     .lightGroups = false,
     .everyLight = true};

@@ -33,7 +33,7 @@ Gathered gatherCell(const GatherInputs& in, const LightCells& cells, const Bsdf&
                     const GroupSink& groups) {
   Gathered out;
   RgbSum total, clamped;
-  const Vec3 from = in.rays.offsetOrigin(bsdf.point().position, bsdf.point().ng);
+  const Vec3 from = in.accel.offsetOrigin(bsdf.point().position, bsdf.point().ng);
   const auto add = [&](const LightRun& run, bool visible) {
     out.cut += run.end - run.begin;
     for (uint32_t k = run.begin; k < run.end; ++k) {
@@ -41,7 +41,8 @@ Gathered gatherCell(const GatherInputs& in, const LightCells& cells, const Bsdf&
       VplTransfer c;
       if (!unoccludedTransfer(in.vpls, i, bsdf, c)) continue;
       ++(visible ? out.counts[0] : out.shadowRays);
-      if (!visible && in.rays.occluded(from, in.vpls.position[i])) continue;
+      out.sampledPairs += c.sampled;
+      if (!visible && in.accel.occluded(from, in.vpls.position[i])) continue;
       const Vec3 light = c.transfer * in.vpls.intensity[i];
       total.add(light);
       clamped.add(light * c.clampLoss);

@@ -19,11 +19,6 @@ TEST(Lie, HasTheEnergyOfAllVpls) {
 
 TEST(Lie, WithoutClassesItIsTheSumOverAll) { expectSumOverAll("lie", {{"class-rays", "0"}}); }
 
-TEST(Lie, IsTheSameForAnyThreadsAndShards) {
-  expectSameBytesForAnyThreads("lie");
-  expectSameBytesInShards("lie");
-}
-
 TEST(Lie, VisibleAndHiddenVplsNeedNoRays) {
   for (const GatherCase* c : gatherCases()) {
     const FilmStats all = statsOf(c->world, c->lit, {{"class-rays", "0"}}),

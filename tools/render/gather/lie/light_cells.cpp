@@ -66,7 +66,7 @@ class CellBuilder {
 
   // Sorts the film's points by octants.
   void placePoints() {
-    const Film& size = in_.rays.scene().film;
+    const Film& size = in_.accel.scene().film;
     const double pixels = double(size.width) * size.height;
     requireMemory(pixels * double(sizeof(SurfacePoint)), "--gather lie", "choose a smaller --size");
     std::vector<SurfacePoint> film = in_.primaryPoints().points;
@@ -178,8 +178,8 @@ class CellBuilder {
       if (dot(d, p.ns) <= 0.0f || dot(d, p.ng) <= 0.0f || dot(d, in_.vpls.normal[vpl]) >= 0.0f)
         continue;
       ++rays;
-      const Vec3 from = in_.rays.offsetOrigin(p.position, p.ng);
-      ++(in_.rays.occluded(from, in_.vpls.position[vpl]) ? hidden : seen);
+      const Vec3 from = in_.accel.offsetOrigin(p.position, p.ng);
+      ++(in_.accel.occluded(from, in_.vpls.position[vpl]) ? hidden : seen);
       if (seen > 0 && hidden > 0) return Sight::Partial;
       if (seen == enough) return Sight::Visible;
       if (hidden == enough) return Sight::Hidden;

@@ -27,11 +27,11 @@ bool lessBound(const Cluster& a, const Cluster& b) {
   return a.bound != b.bound ? a.bound < b.bound : a.node < b.node;
 }
 
-Gathered gatherCut(const RayScene& rays, const VplLights& vpls, const LightTree& tree, double error,
-                   size_t maxCut, const Bsdf& bsdf, const GroupSink& groups) {
+Gathered gatherCut(const Accelerator& accel, const VplLights& vpls, const LightTree& tree,
+                   double error, size_t maxCut, const Bsdf& bsdf, const GroupSink& groups) {
   Gathered out;
   if (tree.nodes.empty()) return out;
-  const Vec3 from = rays.offsetOrigin(bsdf.point().position, bsdf.point().ng);
+  const Vec3 from = accel.offsetOrigin(bsdf.point().position, bsdf.point().ng);
   const ClusterReceiver receiver(bsdf);
   thread_local std::vector<Cluster> heap;  // reused between calls to avoid allocations
   heap.clear();
@@ -48,7 +48,7 @@ Gathered gatherCut(const RayScene& rays, const VplLights& vpls, const LightTree&
     VplTransfer found;
     if (unoccludedTransfer(vpls, r, bsdf, found)) {
       ++out.shadowRays;
-      if (!rays.occluded(from, vpls.position[r])) {
+      if (!accel.occluded(from, vpls.position[r])) {
         c.transfer = found.transfer;
         c.clampLoss = found.clampLoss;
       }
@@ -89,9 +89,9 @@ Gathered gatherCut(const RayScene& rays, const VplLights& vpls, const LightTree&
 Gather make(const GatherInputs& in, const Values& options) {
   const auto error = double{options.real32(kErrorOption)};
   const auto maxCut = static_cast<size_t>(options[kMaxCutOption]);
-  return gatherEach([&rays = in.rays, &vpls = in.vpls, &tree = in.tree, error, maxCut](
+  return gatherEach([&accel = in.accel, &vpls = in.vpls, &tree = in.tree, error, maxCut](
                         const Bsdf& bsdf, const GroupSink& groups) {
-    return gatherCut(rays, vpls, tree, error, maxCut, bsdf, groups);
+    return gatherCut(accel, vpls, tree, error, maxCut, bsdf, groups);
   });
 }
 

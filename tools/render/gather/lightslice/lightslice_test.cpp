@@ -10,8 +10,6 @@ double sliceError(const GatherCase& c, const Given& options) {
 // VPLs that no slice's representative sees are lost (theory.md).
 TEST(LightSlice, HasTheEnergyOfAllVpls) { expectEnergyOfAll("lightslice", 0.03, 2); }
 
-TEST(LightSlice, IsTheSameForAnyThreads) { expectSameBytesForAnyThreads("lightslice"); }
-
 TEST(LightSlice, MoreColumnsAreNearerToAllVpls) {
   const GatherCase& c = *gatherCases().back();
   double before = INFINITY;

@@ -41,7 +41,7 @@ class SliceMatrix {
         transfer_(receivers_.size()) {
     for (const uint32_t i : receivers_) {
       const SurfacePoint& p = tile_.bsdf[i]->point();
-      from_.push_back(in_.rays.offsetOrigin(p.position, p.ng));
+      from_.push_back(in_.accel.offsetOrigin(p.position, p.ng));
     }
   }
 
@@ -107,7 +107,7 @@ class SliceMatrix {
       const auto pick = static_cast<size_t>(double{rng.next()} * static_cast<double>(left));
       std::swap(rows_[k], rows_[k + pick]);
       ++out_[receivers_[rows_[k]]].shadowRays;
-      const bool hidden = in_.rays.occluded(from_[rows_[k]], in_.vpls.position[draw.index]);
+      const bool hidden = in_.accel.occluded(from_[rows_[k]], in_.vpls.position[draw.index]);
       visible_.push_back(hidden ? 0.0 : 1.0);
     }
   }

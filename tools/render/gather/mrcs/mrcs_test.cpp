@@ -22,11 +22,6 @@ TEST(Mrcs, WithAsManyColumnsAsVplsItIsTheSumOverAll) {
   expectSumOverAll("mrcs", {{"columns", "100k"}});
 }
 
-TEST(Mrcs, IsTheSameForAnyThreadsAndShards) {
-  expectSameBytesForAnyThreads("mrcs");
-  expectSameBytesInShards("mrcs");
-}
-
 TEST(Mrcs, MoreColumnsAreNearerToAllVpls) {
   const GatherCase& c = *gatherCases().back();
   double before = INFINITY;

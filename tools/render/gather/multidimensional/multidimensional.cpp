@@ -62,7 +62,7 @@ class PixelCut {
         samples_(samples),
         rng_(rng),
         tree_(buildReceiverTree(samples.points, samples.bounds,
-                                kNormalScale * in.rays.scene().bounds.diagonal())),
+                                kNormalScale * in.accel.scene().bounds.diagonal())),
         upTo_{0.0} {
     for (const uint32_t i : tree_.order) upTo_.push_back(upTo_.back() + samples.strength(i));
   }
@@ -111,8 +111,8 @@ class PixelCut {
     VplTransfer found;
     if (!unoccludedTransfer(in_.vpls, vpl, bsdf, found)) return pair;
     ++out_.shadowRays;
-    const Vec3 from = in_.rays.offsetOrigin(bsdf.point().position, bsdf.point().ng);
-    if (in_.rays.occluded(from, in_.vpls.position[vpl])) return pair;
+    const Vec3 from = in_.accel.offsetOrigin(bsdf.point().position, bsdf.point().ng);
+    if (in_.accel.occluded(from, in_.vpls.position[vpl])) return pair;
     pair.transfer = found.transfer;
     pair.clampLoss = found.clampLoss;
     return pair;

@@ -10,10 +10,6 @@ const Given kExact{{"error", "0"}, {"max-cut", "1M"}};
 
 TEST(Multidimensional, HasTheEnergyOfAllVpls) { expectEnergyOfAll("multidimensional", 0.02, 1); }
 
-TEST(Multidimensional, IsTheSameForAnyThreads) { expectSameBytesForAnyThreads("multidimensional"); }
-
-TEST(Multidimensional, IsTheSameInShards) { expectSameBytesInShards("multidimensional"); }
-
 TEST(Multidimensional, HasTheEnergyInFurnaceAndOfOneBounce) {
   expectEnergyInFurnaceAndOfOneBounce("multidimensional", 0.02);
 }

@@ -79,7 +79,7 @@ float spread(const OctreeNode& n, LightKind kind, Vec3 intensity, const Bsdf& bs
 class Octree {
  public:
   Octree(const GatherInputs& in, double error, bool shadows)
-      : rays_(in.rays),
+      : accel_(in.accel),
         vpls_(in.vpls),
         tree_(buildLightOctree(in.vpls, streamKey(in.seed, Stream::Octree))),
         error_(error),
@@ -87,7 +87,7 @@ class Octree {
 
   Gathered gather(const Bsdf& bsdf) const {
     Gathered out;
-    const Vec3 from = rays_.offsetOrigin(bsdf.point().position, bsdf.point().ng);
+    const Vec3 from = accel_.offsetOrigin(bsdf.point().position, bsdf.point().ng);
     thread_local std::vector<Open> heap;  // reused between calls to avoid allocations
     heap.clear();
     RgbSum total, clamped;
@@ -138,14 +138,14 @@ class Octree {
     if (o.spread < 0.0f || !unoccludedTransfer(lights, node, bsdf, c)) return o;
     if (shadows_) {
       ++out.shadowRays;
-      if (rays_.occluded(from, vpls_.position[n.shadow])) return o;
+      if (accel_.occluded(from, vpls_.position[n.shadow])) return o;
     }
     o.light = c.transfer * lights.intensity[node];
     o.clampLoss = c.clampLoss;
     return o;
   }
 
-  const RayScene& rays_;
+  const Accelerator& accel_;
   const VplLights& vpls_;
   LightOctree tree_;
   double error_;

@@ -14,11 +14,6 @@ TEST(Paquette, HasAboutTheEnergyOfAllVpls) {
   expectEnergyInFurnaceAndOfOneBounce("paquette", 0.02);
 }
 
-TEST(Paquette, IsTheSameForAnyThreadsAndShards) {
-  expectSameBytesForAnyThreads("paquette");
-  expectSameBytesInShards("paquette");
-}
-
 TEST(Paquette, WithoutErrorItIsTheSumOverAll) { expectSumOverAll("paquette", {{"error", "0"}}); }
 
 // Nothing hides a VPL in a convex room, where the published method is exact, too.

@@ -22,10 +22,10 @@ constexpr auto kOptions = optionTable(kThresholdOption, kCellsOption, kDimRaysOp
 constexpr std::array kCounters{
     Counter{"brightlights", "bright VPLs", "VPLs that are bright in the sample's cell"}};
 
-Gathered gatherPoint(const RayScene& rays, const VplLights& vpls, const BrightLights& lights,
+Gathered gatherPoint(const Accelerator& accel, const VplLights& vpls, const BrightLights& lights,
                      uint32_t dimRays, const Bsdf& bsdf, uint64_t key, const GroupSink& groups) {
   Gathered out;
-  const ShadowTest test(rays, vpls, bsdf, groups);
+  const ShadowTest test(accel, vpls, bsdf, groups);
   const BrightLights::Cell& cell = lights.at(bsdf.point().position);
   for (const uint32_t i : cell.bright) test.add(i, 1.0f, out);
   out.cut = out.counts[0] = static_cast<uint32_t>(cell.bright.size());
@@ -42,12 +42,12 @@ Gathered gatherPoint(const RayScene& rays, const VplLights& vpls, const BrightLi
 
 Gather make(const GatherInputs& in, const Values& options) {
   const auto lights = std::make_shared<const BrightLights>(
-      in.vpls, in.rays.scene().bounds, static_cast<uint32_t>(options[kCellsOption]),
+      in.vpls, in.accel.scene().bounds, static_cast<uint32_t>(options[kCellsOption]),
       options.real32(kThresholdOption));
   const auto dimRays = static_cast<uint32_t>(options[kDimRaysOption]);
-  return gatherEach([&rays = in.rays, &vpls = in.vpls, lights, dimRays](
+  return gatherEach([&accel = in.accel, &vpls = in.vpls, lights, dimRays](
                         const Bsdf& bsdf, uint64_t key, const GroupSink& groups) {
-    return gatherPoint(rays, vpls, *lights, dimRays, bsdf, key, groups);
+    return gatherPoint(accel, vpls, *lights, dimRays, bsdf, key, groups);
   });
 }
 

@@ -17,11 +17,6 @@ TEST(Shirley, WithOneDimVplToo) {
   expectMeanOfAll("shirley", 0.08, {{"threshold", "0.01"}, {"dim-rays", "1"}}, false);
 }
 
-TEST(Shirley, IsTheSameForAnyThreadsAndShards) {
-  expectSameBytesForAnyThreads("shirley");
-  expectSameBytesInShards("shirley");
-}
-
 TEST(Shirley, WhereEveryVplIsBrightItIsTheSumOverAll) {
   expectSumOverAll("shirley", {{"threshold", "0"}});
 }

@@ -61,12 +61,12 @@ std::optional<float> leftShare(const LightNode& left, const LightNode& right,
   return 0.5f * (near + far);
 }
 
-Gathered gatherPoint(const RayScene& rays, const VplLights& vpls, const LightTree& tree,
+Gathered gatherPoint(const Accelerator& accel, const VplLights& vpls, const LightTree& tree,
                      size_t cutSize, const Bsdf& bsdf, uint64_t key, const GroupSink& groups) {
   Gathered out;
   if (tree.nodes.empty()) return out;
   const ClusterReceiver receiver(bsdf);
-  const ShadowTest test(rays, vpls, bsdf, groups);
+  const ShadowTest test(accel, vpls, bsdf, groups);
   const std::vector<Cluster>& cut = chooseCut(tree, receiver, cutSize);
   for (const Cluster& cluster : cut) {
     const float u = toUnitFloat(random64(key, cluster.node, 0));
@@ -82,9 +82,9 @@ Gathered gatherPoint(const RayScene& rays, const VplLights& vpls, const LightTre
 
 Gather make(const GatherInputs& in, const Values& options) {
   const auto cut = static_cast<size_t>(options[kCutOption]);
-  return gatherEach([&rays = in.rays, &vpls = in.vpls, &tree = in.tree, cut](
+  return gatherEach([&accel = in.accel, &vpls = in.vpls, &tree = in.tree, cut](
                         const Bsdf& bsdf, uint64_t key, const GroupSink& groups) {
-    return gatherPoint(rays, vpls, tree, cut, bsdf, key, groups);
+    return gatherPoint(accel, vpls, tree, cut, bsdf, key, groups);
   });
 }
 

@@ -44,9 +44,9 @@ Vec3 glossyOf(const ReceiverPacket& p, uint32_t lane, Vec3 from) {
 
 }  // namespace
 
-ShadowQueue::ShadowQueue(const RayScene& rays, const VplLights& vpls,
+ShadowQueue::ShadowQueue(const Accelerator& accel, const VplLights& vpls,
                          std::span<ReceiverPacket> packets)
-    : rays_(rays), vpls_(vpls) {
+    : accel_(accel), vpls_(vpls) {
   uint32_t places = 0;
   for (const ReceiverPacket& p : packets) {
     for (uint32_t l = 0; l < p.count; ++l) places = std::max(places, p.pixelOrder[l] + 1);
@@ -116,7 +116,7 @@ void ShadowQueue::traceAll() {
       segments_[at] = {d.packet->offset[l], d.at};
     }
   }
-  rays_.occluded(segments_, hidden_);
+  accel_.occluded(segments_, hidden_);
   for (size_t k = 0; k < order_.size(); ++k) {
     waiting_[order_[k].pending].lanes &= ~(uint32_t{hidden_[k]} << order_[k].lane);
   }

@@ -15,7 +15,7 @@ namespace bnvpl {
 class ShadowQueue {
  public:
   // Borrows all. The packets must not move.
-  ShadowQueue(const RayScene& rays, const VplLights& vpls, std::span<ReceiverPacket> packets);
+  ShadowQueue(const Accelerator& accel, const VplLights& vpls, std::span<ReceiverPacket> packets);
 
   // Adds the light of a VPL, drawn from a cluster, to all receivers of one of the packets. A
   // contribution that is below `negligible` (W/(m2 sr)) for all of them is subject to Russian
@@ -44,7 +44,7 @@ class ShadowQueue {
   static void accumulate(const PendingContribution& d);
   void accumulateGroups(const PendingContribution& d) const;
 
-  const RayScene& rays_;
+  const Accelerator& accel_;
   const VplLights& vpls_;
   std::vector<PendingContribution> waiting_;
   std::vector<uint32_t> rayCount_;  // rays per place; while tracing, where those of a place begin

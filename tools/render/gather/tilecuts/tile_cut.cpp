@@ -82,21 +82,21 @@ SampleReceivers chooseReceivers(const TileReceivers& tile) {
 // shadow rays. The receivers represent their neighbours, too, and single draws are noisy. So each
 // value is replaced by its geometric mean with that of all, which is less influenced by bright ones
 // than the mean.
-std::array<float, kSampleReceivers> lightAt(const RayScene& rays, const VplLights& vpls,
+std::array<float, kSampleReceivers> lightAt(const Accelerator& accel, const VplLights& vpls,
                                             const LightTree& tree, const SampleReceivers& sample,
                                             uint64_t key) {
   std::array<float, kSampleReceivers> light{};
   uint32_t draw = 0;
   for (size_t k = 0; k < kSampleReceivers; ++k) {
     const Bsdf& b = *sample[k];
-    const Vec3 from = rays.offsetOrigin(b.point().position, b.point().ng);
+    const Vec3 from = accel.offsetOrigin(b.point().position, b.point().ng);
     for (const uint32_t node : tree.startCut) {
       const LightNode& n = tree.nodes[node];
       const VplDraw vpl = tree.draw(n, toUnitFloat(random64(key, draw++, kDimVpl)));
       VplTransfer c;
       if (!unoccludedTransfer(vpls, vpl.index, b, c)) continue;
       const Vec3 part = c.transfer * vpls.intensity[vpl.index] * vpl.weight;
-      const bool blocked = rays.occluded(from, vpls.position[vpl.index]);
+      const bool blocked = accel.occluded(from, vpls.position[vpl.index]);
       light[k] += (part.x + part.y + part.z) * (blocked ? kBlockedShare : 1.0f);
     }
   }
@@ -117,7 +117,7 @@ std::array<float, kSampleReceivers> lightAt(const RayScene& rays, const VplLight
 
 // Refines the cluster with the largest variance, summed over the sample receivers, until the sum
 // over all clusters is as small as the samples of a pixel require.
-TileCut chooseTileCut(const RayScene& rays, const VplLights& vpls, const LightTree& tree,
+TileCut chooseTileCut(const Accelerator& accel, const VplLights& vpls, const LightTree& tree,
                       const TileCutOptions& options, const TileReceivers& tile) {
   const SampleReceivers sample = chooseReceivers(tile);
   if (!sample[0]) return {};
@@ -128,7 +128,7 @@ TileCut chooseTileCut(const RayScene& rays, const VplLights& vpls, const LightTr
       return variance != o.variance ? variance < o.variance : node < o.node;
     }
   };
-  std::array<float, kSampleReceivers> light = lightAt(rays, vpls, tree, sample, tile.key);
+  std::array<float, kSampleReceivers> light = lightAt(accel, vpls, tree, sample, tile.key);
   for (float& l : light) {
     l += tile.otherLight;
     if (l > tile.medianTileLight)

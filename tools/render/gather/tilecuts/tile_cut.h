@@ -22,7 +22,7 @@ struct TileCut {
   float negligible = 0.0f;  // contribution below which Russian roulette applies, W/(m2 sr)
 };
 // Chooses the cut of a tile; it is empty if the tile has no receivers.
-TileCut chooseTileCut(const RayScene& rays, const VplLights& vpls, const LightTree& tree,
+TileCut chooseTileCut(const Accelerator& accel, const VplLights& vpls, const LightTree& tree,
                       const TileCutOptions& options, const TileReceivers& tile);
 
 }  // namespace bnvpl

@@ -38,7 +38,7 @@ uint32_t orderOfPixel(uint32_t x, uint32_t y, uint32_t width) {
 // Pixels of a packet share their error. Spread in this way the error is fine grain, while packets
 // of 4 x 4 neighbours would be visible as blocks. Draws from a cluster are stratified over all
 // packets of the tile and over the samples of each pixel, which are all in the same packet.
-std::vector<ReceiverPacket> makePackets(const RayScene& rays, const TileReceivers& tile) {
+std::vector<ReceiverPacket> makePackets(const Accelerator& accel, const TileReceivers& tile) {
   std::vector<uint32_t> packetOf;  // one per pixel
   for (uint32_t p = 0; p < tile.pixels; ++p) {
     packetOf.push_back(packetOfPixel(p % tile.width, p / tile.width, tile.key));
@@ -73,7 +73,7 @@ std::vector<ReceiverPacket> makePackets(const RayScene& rays, const TileReceiver
       for (size_t k = begin; k < end; ++k) {
         const uint32_t pixel = receivers[k] % tile.pixels;
         const Bsdf& b = *tile.bsdf[receivers[k]];
-        packet.add(receivers[k], b, rays.offsetOrigin(b.point().position, b.point().ng),
+        packet.add(receivers[k], b, accel.offsetOrigin(b.point().position, b.point().ng),
                    orderOfPixel(pixel % tile.width, pixel / tile.width, tile.width));
       }
     }
@@ -102,14 +102,14 @@ bool tooNear(const LightNode& n, float allowed, const ReceiverPacket& p) {
                   [&](auto kind) { return exceedsAnywhere<decltype(kind)>(n, allowed, p); });
 }
 
-void gatherTile(const RayScene& rays, const VplLights& vpls, const LightTree& tree,
+void gatherTile(const Accelerator& accel, const VplLights& vpls, const LightTree& tree,
                 const TileCutOptions& options, const TileReceivers& tile, std::span<Gathered> out) {
   std::fill(out.begin(), out.end(), Gathered{});
   if (tree.nodes.empty()) return;
-  const TileCut cut = chooseTileCut(rays, vpls, tree, options, tile);
+  const TileCut cut = chooseTileCut(accel, vpls, tree, options, tile);
   if (cut.nodes.empty()) return;
-  std::vector<ReceiverPacket> packets = makePackets(rays, tile);
-  ShadowQueue queue(rays, vpls, packets);
+  std::vector<ReceiverPacket> packets = makePackets(accel, tile);
+  ShadowQueue queue(accel, vpls, packets);
   Bounds bounds;
   float brightest = 0.0f;
   for (const ReceiverPacket& packet : packets) {
@@ -150,9 +150,9 @@ void gatherTile(const RayScene& rays, const VplLights& vpls, const LightTree& tr
 Gather make(const GatherInputs& in, const Values& values) {
   const TileCutOptions options{values.real32(kErrorOption),
                                static_cast<uint32_t>(values[kMaxCutOption])};
-  return {[&rays = in.rays, &vpls = in.vpls, &tree = in.tree, options](const TileReceivers& tile,
-                                                                       std::span<Gathered> out) {
-    gatherTile(rays, vpls, tree, options, tile, out);
+  return {[&accel = in.accel, &vpls = in.vpls, &tree = in.tree, options](const TileReceivers& tile,
+                                                                         std::span<Gathered> out) {
+    gatherTile(accel, vpls, tree, options, tile, out);
   }};
 }
 

@@ -38,9 +38,10 @@ std::vector<float> hitRates(const GatherInputs& in, uint64_t tests) {
     for (uint64_t k = 0; k < tests; ++k) {
       const SurfacePoint& p = seen[k * seen.size() / tests];
       VplTransfer c;
-      if (!unoccludedTransfer(in.vpls, i, Bsdf(in.rays.scene(), p), c)) continue;
+      if (!unoccludedTransfer(in.vpls, i, Bsdf(in.accel.scene(), p), c)) continue;
       ++faced;
-      hits += in.rays.occluded(in.rays.offsetOrigin(p.position, p.ng), in.vpls.position[i]) ? 0 : 1;
+      hits +=
+          in.accel.occluded(in.accel.offsetOrigin(p.position, p.ng), in.vpls.position[i]) ? 0 : 1;
     }
     rates[i] = (static_cast<float>(hits) + 1.0f) / (static_cast<float>(faced) + 2.0f);
     if (in.progress) in.progress(1);
@@ -53,6 +54,7 @@ struct Potential {
   uint32_t vpl;
   Vec3 light, transfer;
   float clampLoss;
+  bool sampled;
 };
 bool brighter(const Potential& a, const Potential& b) {
   return a.sum != b.sum ? a.sum > b.sum : a.vpl < b.vpl;
@@ -65,19 +67,23 @@ std::vector<Potential>& sortedPotentials(const VplLights& vpls, const Bsdf& bsdf
   for (uint32_t i = 0; i < vpls.size(); ++i) {
     if (!unoccludedTransfer(vpls, i, bsdf, c)) continue;
     const Vec3 light = c.transfer * vpls.intensity[i];
-    list.push_back({light.x + light.y + light.z, i, light, c.transfer, c.clampLoss});
+    list.push_back({light.x + light.y + light.z, i, light, c.transfer, c.clampLoss, c.sampled});
   }
   std::ranges::sort(list, brighter);
   return list;
 }
 
-Gathered gatherPoint(const RayScene& rays, const VplLights& vpls, const std::vector<float>& rates,
-                     double tolerance, const Bsdf& bsdf, const GroupSink& groups) {
+Gathered gatherPoint(const Accelerator& accel, const VplLights& vpls,
+                     const std::vector<float>& rates, double tolerance, const Bsdf& bsdf,
+                     const GroupSink& groups) {
   const std::vector<Potential>& list = sortedPotentials(vpls, bsdf);
   double untested = 0.0;
-  for (const Potential& p : list) untested += double{p.sum};
-  const Vec3 from = rays.offsetOrigin(bsdf.point().position, bsdf.point().ng);
   Gathered out;
+  for (const Potential& p : list) {
+    untested += double{p.sum};
+    out.sampledPairs += p.sampled;
+  }
+  const Vec3 from = accel.offsetOrigin(bsdf.point().position, bsdf.point().ng);
   RgbSum total, clamped;
   const auto add = [&](const Potential& p, double share) {
     total.add(p.light, share);
@@ -93,7 +99,7 @@ Gathered gatherPoint(const RayScene& rays, const VplLights& vpls, const std::vec
     ++out.shadowRays;
     expected += double{rates[p.vpl]};
     untested -= double{p.sum};
-    if (rays.occluded(from, vpls.position[p.vpl])) continue;
+    if (accel.occluded(from, vpls.position[p.vpl])) continue;
     hits += 1.0;
     add(p, 1.0);
   }
@@ -111,9 +117,9 @@ Gather make(const GatherInputs& in, const Values& options) {
   const auto rates =
       std::make_shared<const std::vector<float>>(hitRates(in, options[kVisibilityTestsOption]));
   return gatherEach(
-      [&rays = in.rays, &vpls = in.vpls, rates, tolerance = options[kToleranceOption]](
+      [&accel = in.accel, &vpls = in.vpls, rates, tolerance = options[kToleranceOption]](
           const Bsdf& bsdf, const GroupSink& groups) {
-        return gatherPoint(rays, vpls, *rates, tolerance, bsdf, groups);
+        return gatherPoint(accel, vpls, *rates, tolerance, bsdf, groups);
       });
 }
 

@@ -6,8 +6,6 @@ namespace {
 // Untested VPLs count with an expected visibility, which is right on average up to its own error.
 TEST(Ward, HasTheEnergyOfAllVpls) { expectEnergyOfAll("ward", 0.02, 1); }
 
-TEST(Ward, IsTheSameForAnyThreads) { expectSameBytesForAnyThreads("ward"); }
-
 TEST(Ward, WithoutToleranceEveryVplIsTested) {
   const GatherCase& c = *gatherCases().front();
   const Image all = c.indirect("all", {}, 1), ward = c.indirect("ward", {{"tolerance", "0"}}, 1);
@@ -32,7 +30,7 @@ TEST(Ward, ReportsItsPreparations) {
   Preparations told;
   const Values options =
       resolve(renderSpec(), with(kPlainRender, {{"gather", "ward"}, {"only", "indirect"}}));
-  render(c.world.rays, c.world.lights, c.lit, options, told.progress);
+  render(c.world.accel, c.world.lights, c.lit, options, told.progress);
   EXPECT_EQ(told.names, std::vector<std::string>{"visibility pilot, VPLs"});
 }
 

@@ -34,7 +34,7 @@ uint32_t sideOf(uint64_t raysEach) {
 
 }  // namespace
 
-Guide::Guide(const VplTable& lit, const RayScene& rays, const LightSet& lights, uint64_t seed,
+Guide::Guide(const VplTable& lit, const Accelerator& accel, const LightSet& lights, uint64_t seed,
              uint64_t raysEach, const ProgressFn& progress)
     : position_(lit.position),
       normal_(lit.normal),
@@ -49,7 +49,7 @@ Guide::Guide(const VplTable& lit, const RayScene& rays, const LightSet& lights, 
   const uint32_t each = strata_.cells();
   std::vector<Learnt> learnt(lit.size() * each);
   parallelFor(lit.size(), 16, [&](size_t i) {
-    learn(rays, lights, key, static_cast<uint32_t>(i), lit.radius[i],
+    learn(accel, lights, key, static_cast<uint32_t>(i), lit.radius[i],
           std::span(learnt).subspan(i * each, each));
     if (progress) progress(1);
   });
@@ -77,17 +77,17 @@ void Guide::findRadiance(const VplTable& lit, const NearSurfaces& near) {
 
 // Estimates the incident light of each stratum by one ray: emission times its MIS weight against
 // light sampling, and the radiance that leaves the VPLs.
-void Guide::learn(const RayScene& rays, const LightSet& lights, uint64_t key, uint32_t region,
+void Guide::learn(const Accelerator& accel, const LightSet& lights, uint64_t key, uint32_t region,
                   float radius, std::span<Learnt> learnt) const {
   Rng rng(key, region);
   const Basis frame(normal_[region]);
-  const Vec3 centre = rays.offsetOrigin(position_[region], normal_[region]);
+  const Vec3 centre = accel.offsetOrigin(position_[region], normal_[region]);
   std::array<Vec3, kOrigins> origins;
   origins.fill(centre);
   for (uint32_t k = 1; k < kOrigins; ++k) {
     const float u = rng.next(), v = rng.next();
     const Vec3 at = centre + frame.toWorld(sampleDisk(u, v)) * radius;
-    if (!rays.occluded(centre, at)) origins[k] = at;
+    if (!accel.occluded(centre, at)) origins[k] = at;
   }
   for (uint32_t k = 0; k < strata_.cells(); ++k) {
     const Vec3 from = origins[(k + k / strata_.side) % kOrigins];
@@ -95,16 +95,16 @@ void Guide::learn(const RayScene& rays, const LightSet& lights, uint64_t key, ui
     const Vec3 local = strata_.direction(k, u, v);
     const Vec3 towards = frame.toWorld(local);
     const SpecularPath path =
-        followSpecularPath(rays, lights, from, towards, {pdfCosineHemisphere(local.z), from}, rng);
+        followSpecularPath(accel, lights, from, towards, {pdfCosineHemisphere(local.z), from}, rng);
     Vec3 found = path.emissionFirst + path.emissionLater;
     if (path.rough) {
       const uint32_t at = regionAt(path.hit);
       if (at != kNone) {
         found += path.throughput * radiance_[at];
       } else {
-        const Bsdf bsdf(rays.scene(), path.hit);
+        const Bsdf bsdf(accel.scene(), path.hit);
         found += path.throughput *
-                 directLight(rays, lights, Reflected{bsdf}, {}, NoRays{}, LightNumbers(rng));
+                 directLight(accel, lights, Reflected{bsdf}, {}, NoRays{}, LightNumbers(rng));
       }
     }
     const float value = mean(found);

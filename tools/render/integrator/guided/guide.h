@@ -19,7 +19,7 @@ class Guide : public DirectionGuide {
  public:
   // `raysEach`: rays traced from each VPL. The guide is empty if they are too few or there are no
   // VPLs.
-  Guide(const VplTable& lit, const RayScene& rays, const LightSet& lights, uint64_t seed,
+  Guide(const VplTable& lit, const Accelerator& accel, const LightSet& lights, uint64_t seed,
         uint64_t raysEach, const ProgressFn& progress);
 
   // Index of the VPL around which a point lies, or kNone.
@@ -43,7 +43,7 @@ class Guide : public DirectionGuide {
     float radiance;
     uint32_t cell;
   };
-  void learn(const RayScene& rays, const LightSet& lights, uint64_t key, uint32_t region,
+  void learn(const Accelerator& accel, const LightSet& lights, uint64_t key, uint32_t region,
              float radius, std::span<Learnt> learnt) const;
   std::vector<float> smooth(const NearSurfaces& near, std::span<const Learnt> learnt) const;
   void fillCdfs(const std::vector<float>& radiance);

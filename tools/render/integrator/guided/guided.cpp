@@ -67,7 +67,7 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   const auto vpls = std::max<uint64_t>(1, in.lit.size());
   const auto parts = std::make_shared<Parts>();
   parts->spatialLights = std::make_unique<const SpatialLightSampler>(
-      in.rays, in.lights, in.lit.position, in.lit.normal, in.lit.radius,
+      in.accel, in.lights, in.lit.position, in.lit.normal, in.lit.radius,
       streamKey(in.seed, Stream::SpatialLightSampler), in.progress);
   TileParts tile;
   tile.spatialLights = parts->spatialLights.get();
@@ -78,12 +78,12 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
     const CostTrial::Part part(in.trial, static_cast<double>(std::max<uint64_t>(1, each)) /
                                              static_cast<double>(std::max<uint64_t>(1, few)));
     tile.rays = std::make_unique<const GuidedRays>(
-        in.rays, in.lights, Guide(in.lit, in.rays, in.lights, in.seed, few, in.progress),
+        in.accel, in.lights, Guide(in.lit, in.accel, in.lights, in.seed, few, in.progress),
         *parts->spatialLights, options.real32(kGuideShareOption), tile.raysEach,
         maxBouncesOf(options), in.only);
   }
   if (indirect) tile.reuse = static_cast<unsigned>(options[kReuseOption]);
-  const FilmRays filmRays(in.rays, in.lights, in.filter, tile.spatialLights, in.seed);
+  const FilmRays filmRays(in.accel, in.lights, in.filter, tile.spatialLights, in.seed);
   const bool controlled = indirect && options[kControlOption] == "vpls";
   const PrimaryPoints film =
       controlled || in.only != Only::Indirect ? filmRays.all() : PrimaryPoints{};
@@ -93,7 +93,7 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
                                tile.raysEach * options[kSppOption], maxBouncesOf(options));
   const CausticStats caustics = tile.caustics ? tile.caustics->stats() : CausticStats{};
   parts->integrator =
-      std::make_unique<const TileIntegrator>(in.rays, in.lights, std::move(tile), in.only);
+      std::make_unique<const TileIntegrator>(in.accel, in.lights, std::move(tile), in.only);
   parts->allocation = allocationOf(in, options, *parts->integrator);
   return {.renderTile =
               [parts](const TileSamples& samples) {

@@ -34,7 +34,7 @@ void GuidedRays::send(const RayOrigin& from, unsigned count, uint32_t first, uin
                              : 0.0f;
   std::vector<Vec3> groups(3 * size_t{out.groups});
   sendRays(
-      rays_, from, misRays_, count, first, key, out, [](std::span<const SurfacePoint>) {},
+      accel_, from, misRays_, count, first, key, out, [](std::span<const SurfacePoint>) {},
       [&](size_t, const FirstSegment& segment) {
         follow(segment, expected, from.reuse, groups, out);
       });
@@ -49,15 +49,15 @@ void GuidedRays::follow(const FirstSegment& start, float expected, bool reuse,
   SpecularLightSampling sampling{nullptr, &spatialLights_};
   if (only_ != Only::Indirect) sampling.emissionFirst = out.directGroups().times(start.throughput);
   if (only_ != Only::Direct) sampling.emissionLater = out.indirectGroups().times(start.throughput);
-  SpecularPath vertex =
-      followSpecularPath(rays_, lights_, *start.hit, start.direction, start.arrival, rng, sampling);
+  SpecularPath vertex = followSpecularPath(accel_, lights_, *start.hit, start.direction,
+                                           start.arrival, rng, sampling);
   if (only_ != Only::Indirect) out.direct += start.throughput * vertex.emissionFirst;
   if (only_ == Only::Direct) return;
   const auto add = [&](Vec3 light) { out.indirect += light, out.compensated += light; };
   add(start.throughput * vertex.emissionLater);
   if (maxBounces_ == 0 || !vertex.rough) return;
 
-  const Bsdf first(rays_.scene(), vertex.hit);
+  const Bsdf first(accel_.scene(), vertex.hit);
   ReusedVertex reused{
       vertex.hit.position, vertex.hit.ng, {}, {}, UncoveredShare{INFINITY, INFINITY, {}}};
   Vec3 diffuse;
@@ -105,7 +105,7 @@ LightWithPart GuidedRays::tracePath(const Bsdf& first, const FirstSegment& start
   std::optional<Bsdf> scattering;
   LearnedStrata strata;
   for (unsigned bounce = 1;; ++bounce) {
-    const Bsdf& bsdf = bounce == 1 ? first : scattering.emplace(rays_.scene(), vertex.hit);
+    const Bsdf& bsdf = bounce == 1 ? first : scattering.emplace(accel_.scene(), vertex.hit);
     const uint32_t region = guide_.regionAt(bsdf.point());
     const Directions directions = directionsIn(region, bsdf);
     strata = spatialLights_.at(bsdf.point().position, bsdf.point().ng);
@@ -115,10 +115,10 @@ LightWithPart GuidedRays::tracePath(const Bsdf& first, const FirstSegment& start
     const LightNumbers numbers = lights.strata ? LightNumbers::sequence(rng) : LightNumbers(rng);
     if (bounce == 1) {
       const ReflectedWithDiffuse reflected{bsdf, diffuse};
-      leaving += directLight(rays_, lights_, reflected, sinks(lights, weight), rayPdf, numbers) *
+      leaving += directLight(accel_, lights_, reflected, sinks(lights, weight), rayPdf, numbers) *
                  throughput;
     } else {
-      leaving += weight * directLight(rays_, lights_, Reflected{bsdf}, sinks(lights, weight),
+      leaving += weight * directLight(accel_, lights_, Reflected{bsdf}, sinks(lights, weight),
                                       rayPdf, numbers);
     }
 
@@ -135,8 +135,8 @@ LightWithPart GuidedRays::tracePath(const Bsdf& first, const FirstSegment& start
     else
       weight.part *= next.weight * (1.0f / survival);
     weight.all *= next.weight * (1.0f / survival);
-    const Ray ray = rayOn(rays_, bsdf.point(), next);
-    vertex = followSpecularPath(rays_, lights_, ray.origin, ray.direction,
+    const Ray ray = rayOn(accel_, bsdf.point(), next);
+    vertex = followSpecularPath(accel_, lights_, ray.origin, ray.direction,
                                 {next.pdf, bsdf.point().position, LightChoice::One, lights}, rng,
                                 {nullptr, &spatialLights_, sinkTo(emission), sinkTo(emission)});
     leaving += weight * (vertex.emissionFirst + vertex.emissionLater);

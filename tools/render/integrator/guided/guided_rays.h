@@ -15,10 +15,10 @@ class GuidedRays : public IndirectRays {
   // that are sampled from the guide in regions that it knows; below 1. `misRays`: number of rays
   // from a shading point that MIS weights assume. `maxBounces`: limit of bounces after the shading
   // point.
-  GuidedRays(const RayScene& rays, const LightSet& lights, Guide guide,
+  GuidedRays(const Accelerator& accel, const LightSet& lights, Guide guide,
              const SpatialLightSampler& spatialLights, float guideShare, unsigned misRays,
              unsigned maxBounces, Only only)
-      : rays_(rays),
+      : accel_(accel),
         lights_(lights),
         guide_(std::move(guide)),
         spatialLights_(spatialLights),
@@ -46,7 +46,7 @@ class GuidedRays : public IndirectRays {
   LightWithPart tracePath(const Bsdf& first, const FirstSegment& start, float expected,
                           Vec3 throughput, Vec3 diffuse, Rng& rng, std::span<Vec3> groups) const;
 
-  const RayScene& rays_;
+  const Accelerator& accel_;
   const LightSet& lights_;
   Guide guide_;
   const SpatialLightSampler& spatialLights_;

@@ -52,7 +52,7 @@ TEST(DirectionGrid, FindsTheCellThatADirectionWasDrawnIn) {
 TEST(Guide, DensitiesAreThoseOfTheDraws) {
   const World world("u-shape/scene.toml");
   const VplTable lit = fewLit(world);
-  const Guide guide(lit, world.rays, world.lights, 1, 64, {});
+  const Guide guide(lit, world.accel, world.lights, 1, 64, {});
   size_t known = 0;
   for (uint32_t region = 0; region < lit.size(); region += 7) {
     if (!guide.knows(region)) continue;

@@ -15,11 +15,11 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   const unsigned maxBounces = maxBouncesOf(options);
   const bool photons = in.only != Only::Direct;
   const auto paths =
-      std::make_shared<const PathTracer>(in.rays, in.lights, maxBounces, in.only, !photons);
+      std::make_shared<const PathTracer>(in.accel, in.lights, maxBounces, in.only, !photons);
   Integrator result{[paths](const TileSamples& tile) { paths->render(tile); }};
   if (photons) {
     const auto tracer =
-        std::make_shared<const LightTracer>(in.rays, in.lights, in.filter, maxBounces, in.seed);
+        std::make_shared<const LightTracer>(in.accel, in.lights, in.filter, maxBounces, in.seed);
     result.tracePhotons = [tracer](uint64_t begin, uint64_t end, Splats& out) {
       tracer->follow(begin, end, out);
     };

@@ -14,16 +14,16 @@ constexpr uint64_t kBranches = 32;
 
 }  // namespace
 
-LightTracer::LightTracer(const RayScene& rays, const LightSet& lights, const PixelFilter& filter,
-                         unsigned maxBounces, uint64_t seed)
-    : rays_(rays),
+LightTracer::LightTracer(const Accelerator& accel, const LightSet& lights,
+                         const PixelFilter& filter, unsigned maxBounces, uint64_t seed)
+    : accel_(accel),
       lights_(lights),
       filter_(filter),
       maxBounces_(maxBounces),
       key_(streamKey(seed, Stream::LightTracer)) {}
 
 void LightTracer::follow(uint64_t begin, uint64_t end, Splats& out) const {
-  const Film& film = rays_.scene().film;
+  const Film& film = accel_.scene().film;
   const double pixels = double(film.width) * double(film.height);
   for (uint64_t index = begin; index < end && lights_.size() > 0; ++index) {
     Rng rng(key_, index);
@@ -32,7 +32,7 @@ void LightTracer::follow(uint64_t begin, uint64_t end, Splats& out) const {
     if (!(probability > 0.0f)) continue;
     PhotonStart start = lights_.emit(light, rng);
     start.flux *= static_cast<float>(1.0 / (double{probability} * pixels));
-    const Vec3 lens = sampleLens(rays_.scene().camera, [&] { return rng.nextPoint(); });
+    const Vec3 lens = sampleLens(accel_.scene().camera, [&] { return rng.nextPoint(); });
     follow(PhotonWalk(start, maxBounces_ + 1, rng), lens, index, lights_.group(light), out);
   }
 }
@@ -40,10 +40,10 @@ void LightTracer::follow(uint64_t begin, uint64_t end, Splats& out) const {
 void LightTracer::follow(PhotonWalk photon, Vec3 lens, uint64_t index, uint32_t group,
                          Splats& out) const {
   for (SurfacePoint hit; photon.goesOn();) {
-    rays_.closestHit(photon.next().origin, photon.next().direction, hit);
+    accel_.closestHit(photon.next().origin, photon.next().direction, hit);
     const PhotonWalk before = photon;
     bool seen = false;
-    photon.advance(rays_, hit, [&](const Bsdf& bsdf, Vec3 flux, bool firstBounce) {
+    photon.advance(accel_, hit, [&](const Bsdf& bsdf, Vec3 flux, bool firstBounce) {
       if (!firstBounce) connect(bsdf.point(), lens, flux, group, out);
       seen = inSight(bsdf.point());
     });
@@ -56,12 +56,12 @@ void LightTracer::follow(PhotonWalk photon, Vec3 lens, uint64_t index, uint32_t 
 void LightTracer::followBranches(const PhotonWalk& photon, const SurfacePoint& hit, uint64_t index,
                                  uint32_t group, Splats& out) const {
   for (uint64_t k = 0; k < kBranches; ++k) {
-    const Vec3 lens = sampleLens(rays_.scene().camera, [&] {
+    const Vec3 lens = sampleLens(accel_.scene().camera, [&] {
       return owenSobol(static_cast<uint32_t>(k), random64(key_ + 2, index, 0));
     });
     PhotonWalk branch = photon.branch(1.0f / kBranches, Rng(key_ + 1, index * kBranches + k));
-    branch.advance(rays_, hit, [](const Bsdf&, Vec3, bool) {});
-    const PhotonFate fate = followPhoton(rays_, branch, [&](const Bsdf& bsdf, Vec3 flux, bool) {
+    branch.advance(accel_, hit, [](const Bsdf&, Vec3, bool) {});
+    const PhotonFate fate = followPhoton(accel_, branch, [&](const Bsdf& bsdf, Vec3 flux, bool) {
       connect(bsdf.point(), lens, flux, group, out);
     });
     out.nonFinite += fate.finite ? 0 : 1;
@@ -70,16 +70,16 @@ void LightTracer::followBranches(const PhotonWalk& photon, const SurfacePoint& h
 
 // Whether a vertex and the lens's centre see each other. The vertex need not lie on the film.
 bool LightTracer::inSight(const SurfacePoint& vertex) const {
-  return !rays_.occluded(rays_.offsetOrigin(vertex.position, vertex.ng),
-                         rays_.scene().camera.position);
+  return !accel_.occluded(accel_.offsetOrigin(vertex.position, vertex.ng),
+                          accel_.scene().camera.position);
 }
 
 void LightTracer::connect(const SurfacePoint& vertex, Vec3 lens, Vec3 flux, uint32_t group,
                           Splats& out) const {
-  const auto c = connectToFilm(rays_, vertex, lens, filter_);
+  const auto c = connectToFilm(accel_, vertex, lens, filter_);
   if (!c) return;
   const Vec3 radiance = flux * c->value * c->perArea;
-  forPixelsAt(rays_.scene().film, filter_, c->at, [&](uint32_t pixel, float value) {
+  forPixelsAt(accel_.scene().film, filter_, c->at, [&](uint32_t pixel, float value) {
     out.list.push_back({pixel, radiance * value, group});
   });
 }

@@ -15,7 +15,7 @@ namespace bnvpl {
 // ray can hit. Rough scatterings after the first are limited to maxBounces, as in the path tracer.
 class LightTracer {
  public:
-  LightTracer(const RayScene& rays, const LightSet& lights, const PixelFilter& filter,
+  LightTracer(const Accelerator& accel, const LightSet& lights, const PixelFilter& filter,
               unsigned maxBounces, uint64_t seed);
   void follow(uint64_t begin, uint64_t end, Splats& out) const;
 
@@ -28,7 +28,7 @@ class LightTracer {
   bool inSight(const SurfacePoint& vertex) const;
   void connect(const SurfacePoint& vertex, Vec3 lens, Vec3 flux, uint32_t group, Splats& out) const;
 
-  const RayScene& rays_;
+  const Accelerator& accel_;
   const LightSet& lights_;
   PixelFilter filter_;
   unsigned maxBounces_;

@@ -28,10 +28,10 @@ double NearFieldRays::costOfRay() const { return kCostOfRay; }
 
 void NearFieldRays::send(const RayOrigin& from, unsigned count, uint32_t first, uint64_t key,
                          RayContributions& out) const {
-  std::array<ReachGrid::Lookup, RayScene::kBatch> coverLookup;
+  std::array<ReachGrid::Lookup, Accelerator::kBatch> coverLookup;
   std::vector<Vec3> groups(2 * size_t{out.groups});
   sendRays(
-      rays_, from, misRays_, count, first, key, out,
+      accel_, from, misRays_, count, first, key, out,
       [&](std::span<const SurfacePoint> hits) {
         if (compensation_ && only_ != Only::Direct) compensation_.lookUp(hits, coverLookup);
       },
@@ -140,7 +140,7 @@ void NearFieldRays::follow(const FirstSegment& start, const ReachGrid::Lookup& c
     path.throughput *= segment.throughput;
     goesOn = uncovered.share > 0.0f;
     if (goesOn) {
-      const Bsdf bsdf(rays_.scene(), segment.hit);
+      const Bsdf bsdf(accel_.scene(), segment.hit);
       goesOn = survives(path, uncovered, bsdf);
       if (goesOn) {
         if (reuse) path.makeReusable(uncovered, bsdf);
@@ -159,7 +159,7 @@ void NearFieldRays::follow(const FirstSegment& start, const ReachGrid::Lookup& c
 void NearFieldRays::begin(Path& path, const ReachGrid::Lookup& coverLookup) const {
   const SurfacePoint& hit = *path.start.hit;
   if (hit.triangle != kNone && only_ != Only::Direct &&
-      mayBeSpecular(rays_.scene().materials[hit.material])) {
+      mayBeSpecular(accel_.scene().materials[hit.material])) {
     path.atFirstHit = uncoveredAt(hit, true, &coverLookup, path.rng);
     path.roughImportance = std::max(kMinImportance, path.atFirstHit->share);
   }
@@ -167,7 +167,7 @@ void NearFieldRays::begin(Path& path, const ReachGrid::Lookup& coverLookup) cons
   if (only_ != Only::Indirect)
     sampling.emissionFirst = path.out.directGroups().times(path.throughput);
   if (only_ != Only::Direct) sampling.emissionLater = path.lightSink().times(path.throughput);
-  path.segment = followSpecularPath(rays_, lights_, hit, path.start.direction, path.start.arrival,
+  path.segment = followSpecularPath(accel_, lights_, hit, path.start.direction, path.start.arrival,
                                     path.rng, sampling, path.roughImportance);
 }
 
@@ -211,7 +211,7 @@ void NearFieldRays::shade(Path& path, const Uncovered& uncovered, const Bsdf& bs
   const GroupSink groups =
       path.lightSink().times(path.throughput * (known ? uncovered.share : 1.0f));
   const Vec3 firstBounce =
-      directLight(rays_, lights_, Reflected{bsdf}, {lights, LightChoice::One, {}, groups},
+      directLight(accel_, lights_, Reflected{bsdf}, {lights, LightChoice::One, {}, groups},
                   BsdfRays{bsdf, bsdfRays}, numbers);
   if (known) {
     path.light +=
@@ -232,7 +232,7 @@ bool NearFieldRays::extend(Path& path, const Bsdf& bsdf) const {
   BsdfSample sample;
   Ray next;
   if (path.segments == kMaxSegments ||
-      !scatter(rays_, bsdf, LobeGroup::Rough, Transport::Radiance, path.rng, sample, next)) {
+      !scatter(accel_, bsdf, LobeGroup::Rough, Transport::Radiance, path.rng, sample, next)) {
     return false;
   }
   ++path.out.continued;
@@ -240,7 +240,7 @@ bool NearFieldRays::extend(Path& path, const Bsdf& bsdf) const {
   const GroupSink groups = path.lightSink().times(path.throughput);
   const LearnedLight lights = path.learned(path.isFirst() ? kFirstLightRays : 1);
   path.segment =
-      followSpecularPath(rays_, lights_, next.origin, next.direction,
+      followSpecularPath(accel_, lights_, next.origin, next.direction,
                          {sample.pdf, path.segment.hit.position, LightChoice::One, lights},
                          path.rng, {nullptr, spatialLights_, groups, groups});
   return true;

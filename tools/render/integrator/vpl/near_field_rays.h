@@ -18,10 +18,10 @@ class NearFieldRays : public IndirectRays {
   // `point`: gathers VPLs at the vertices of rays. `misRays`: the number of rays from a shading
   // point that MIS with shadow rays and photons assumes; other numbers remain unbiased.
   // `spatialLights`: distribution for light sampling at vertices; null: sampling by power.
-  NearFieldRays(const RayScene& rays, const LightSet& lights, GatherPoint point,
+  NearFieldRays(const Accelerator& accel, const LightSet& lights, GatherPoint point,
                 Compensation compensation, unsigned misRays,
                 const SpatialLightSampler* spatialLights, Only only)
-      : rays_(rays),
+      : accel_(accel),
         lights_(lights),
         point_(std::move(point)),
         compensation_(std::move(compensation)),
@@ -46,7 +46,7 @@ class NearFieldRays : public IndirectRays {
   void shade(Path& path, const Uncovered& uncovered, const Bsdf& bsdf) const;
   bool extend(Path& path, const Bsdf& bsdf) const;
 
-  const RayScene& rays_;
+  const Accelerator& accel_;
   const LightSet& lights_;
   GatherPoint point_;
   Compensation compensation_;

@@ -66,15 +66,26 @@ struct Parts {
   SampleAllocation allocation = {};
 };
 
+// Counts the pairs whose light is sampled, after the gather's own counters. The compensations that
+// take such light have none.
+GatherTile countingSampledPairs(GatherTile gather, size_t counter) {
+  return [gather = std::move(gather), counter](const TileReceivers& tile, std::span<Gathered> out) {
+    gather(tile, out);
+    for (Gathered& g : out) g.counts[counter] = g.sampledPairs;
+  };
+}
+
 // Makes the gather method. Its point function is always set.
 Gather makeGather(const IntegratorInputs& in, const Values& options, const FilmRays& film,
                   Parts& parts) {
   parts.tree = buildLightTree(parts.vpls, in.seed);
-  Gather gather = gatherOf(options)->make({in.rays, in.lights, in.lit, parts.vpls, parts.tree,
+  Gather gather = gatherOf(options)->make({in.accel, in.lights, in.lit, parts.vpls, parts.tree,
                                            in.seed, [film] { return film.all(); }, in.progress},
                                           options);
+  if (!isFromCentre(parts.vpls.kind))
+    gather.tile = countingSampledPairs(std::move(gather.tile), gatherOf(options)->counters.size());
   if (!gather.point) {
-    parts.point = std::make_unique<PointGather>(in.rays, parts.vpls, parts.tree);
+    parts.point = std::make_unique<PointGather>(in.accel, parts.vpls, parts.tree);
     gather.point = [&point = *parts.point](const Bsdf& bsdf, unsigned draws, Rng& rng,
                                            const GroupSink& groups) {
       return point(bsdf, draws, rng, groups);
@@ -86,7 +97,7 @@ Gather makeGather(const IntegratorInputs& in, const Values& options, const FilmR
 // The kind of light, unless the gather or the compensation cannot take it.
 LightKind lightOf(const Values& options, const CompensateMethod* compensate) {
   const std::string& name = options[kLightOption];
-  const LightKind kind = lightKindNamed(name);
+  const LightKind kind = lightKindOf(options);
   if (isFromCentre(kind)) return kind;
   const GatherMethod* gather = gatherOf(options);
   if (gather && !gather->everyLight) {
@@ -134,22 +145,22 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   const auto parts = std::make_shared<Parts>();
   const CompensateMethod* compensate = compensationOf(options);
   const LightKind light = indirect ? lightOf(options, compensate) : LightKind{};
-  parts->vpls = makeVplLights(in.lit, in.rays, clamp, light, in.litGroups,
+  parts->vpls = makeVplLights(in.lit, in.accel, clamp, light, in.litGroups,
                               compensate && compensate->oneSize ? commonRadius(in.lit) : 0.0f);
   Compensation compensation;
   if (compensate)
-    compensation = compensate->make({in.lit, in.rays, clamp, light, in.litGroups}, options);
+    compensation = compensate->make({in.lit, in.accel, clamp, light, in.litGroups}, options);
   TileParts tile;
   // With --only direct, direct samples trace BSDF rays of their own.
-  if (options.has(kNearFieldRaysOption) && (compensation || hasSpecularLobes(in.rays.scene())))
+  if (options.has(kNearFieldRaysOption) && (compensation || hasSpecularLobes(in.accel.scene())))
     tile.raysEach = static_cast<unsigned>(options[kNearFieldRaysOption]);
   if (indirect && (tile.raysEach > 0 || compensation.tile)) {
     parts->spatialLights = std::make_unique<const SpatialLightSampler>(
-        in.rays, in.lights, in.lit.position, in.lit.normal, in.lit.radius,
+        in.accel, in.lights, in.lit.position, in.lit.normal, in.lit.radius,
         streamKey(in.seed, Stream::SpatialLightSampler), in.progress);
   }
   tile.spatialLights = parts->spatialLights.get();
-  const FilmRays filmRays(in.rays, in.lights, in.filter, tile.spatialLights, in.seed);
+  const FilmRays filmRays(in.accel, in.lights, in.filter, tile.spatialLights, in.seed);
   Gather gather = indirect ? makeGather(in, options, filmRays, *parts) : Gather{};
   tile.gather = std::move(gather.tile);
   tile.gathersForFilter = static_cast<bool>(gatherFilterOf(options));
@@ -162,7 +173,7 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   addDirectLight(in, options, filmRays, film,
                  learned ? static_cast<unsigned>(options[kLightRaysOption]) : 0, tile);
   if (tile.raysEach > 0) {
-    tile.rays = std::make_unique<const NearFieldRays>(in.rays, in.lights, std::move(gather.point),
+    tile.rays = std::make_unique<const NearFieldRays>(in.accel, in.lights, std::move(gather.point),
                                                       std::move(compensation), tile.raysEach,
                                                       tile.spatialLights, in.only);
   }
@@ -172,7 +183,7 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
                                /*bounces=*/0);  // VPLs carry the light of further bounces
   const CausticStats caustics = tile.caustics ? tile.caustics->stats() : CausticStats{};
   parts->integrator =
-      std::make_unique<const TileIntegrator>(in.rays, in.lights, std::move(tile), in.only);
+      std::make_unique<const TileIntegrator>(in.accel, in.lights, std::move(tile), in.only);
   parts->allocation = allocationOf(in, options, *parts->integrator);
   return {.renderTile =
               [parts](const TileSamples& samples) {

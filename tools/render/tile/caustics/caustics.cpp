@@ -13,18 +13,18 @@
 
 namespace bnvpl {
 
-Caustics::Caustics(const RayScene& rays, const LightSet& lights, const PixelFilter& filter,
+Caustics::Caustics(const Accelerator& accel, const LightSet& lights, const PixelFilter& filter,
                    uint64_t photons, float raysOfPixel, unsigned bounces, uint64_t seed,
                    uint32_t groups, const ProgressFn& progress)
-    : rays_(rays),
+    : accel_(accel),
       lights_(lights),
       filter_(filter),
       photons_(photons),
       key_(streamKey(seed, Stream::Caustics)),
       raysOfPixel_(raysOfPixel),
       bounces_(bounces),
-      width_(rays.scene().film.width),
-      light_(size_t{width_} * rays.scene().film.height),
+      width_(accel.scene().film.width),
+      light_(size_t{width_} * accel.scene().film.height),
       groupLight_(light_.size() * groups),
       guide_(lights) {
   for (size_t i = 0; i < groupLight_.size(); i += groups)
@@ -55,9 +55,9 @@ void Caustics::learnEmission(uint64_t key, const ProgressFn& progress) {
         for (const Splat& splat : splats.list) contribution.target += double{mean(splat.radiance)};
         if (!withProxy) return contribution;
         constexpr unsigned kProxyBounces = 4;
-        followPhoton(rays_, PhotonWalk(start, kProxyBounces, rng),
+        followPhoton(accel_, PhotonWalk(start, kProxyBounces, rng),
                      [&](const Bsdf& bsdf, Vec3 arriving, bool) {
-                       if (const auto film = connectToFilm(rays_, bsdf.point(), lens, {}))
+                       if (const auto film = connectToFilm(accel_, bsdf.point(), lens, {}))
                          contribution.proxy += double{mean(arriving * film->value) * film->perArea};
                      });
         return contribution;
@@ -119,11 +119,11 @@ void Caustics::add(const Splat& splat) {
 }
 
 SharedWithPhotons Caustics::shared(const SurfacePoint& point, Vec3 origin) const {
-  return sharedBy(samplesPerArea(rays_.scene(), point, origin));
+  return sharedBy(samplesPerArea(accel_.scene(), point, origin));
 }
 
 Vec3 Caustics::lensPoint(Rng& rng) const {
-  return sampleLens(rays_.scene().camera, [&] { return rng.nextPoint(); });
+  return sampleLens(accel_.scene().camera, [&] { return rng.nextPoint(); });
 }
 
 SharedWithPhotons Caustics::sharedBy(float samplesPerArea) const {
@@ -158,9 +158,9 @@ void Caustics::trace(const Photon& photon, Rng& rng, Splats& out) const {
   bool hidden = false;  // whether paths from the camera cannot find this light
   for (unsigned specularBounces = 0; specularBounces <= kMaxSpecular && isFinite(flux);
        ++specularBounces) {
-    rays_.closestHit(next.origin, next.direction, hit);
+    accel_.closestHit(next.origin, next.direction, hit);
     if (hit.triangle == kNone) return;
-    const Bsdf bsdf(rays_.scene(), hit);
+    const Bsdf bsdf(accel_.scene(), hit);
     if (specularBounces == 0) hidden = !photon.hittable && bsdf.specularIsDelta();
     if (specularBounces > 0 && bsdf.hasRough()) {
       connect(bsdf.point(), flux * bsdf.photonShadingFactor(), photon, out);
@@ -168,7 +168,7 @@ void Caustics::trace(const Photon& photon, Rng& rng, Splats& out) const {
     }
     if (!(bsdf.specularProbability() > 0.0f)) return;
     BsdfSample sample;
-    if (!scatter(rays_, bsdf, LobeGroup::Specular, Transport::Photons, rng, sample, next)) return;
+    if (!scatter(accel_, bsdf, LobeGroup::Specular, Transport::Photons, rng, sample, next)) return;
     flux *= sample.weight;
     if (specularBounces == 0) continue;
     const float survive = std::min(1.0f, maxComponent(sample.weight));
@@ -181,14 +181,14 @@ void Caustics::followBounces(const Bsdf& bsdf, Vec3 flux, const Photon& photon, 
                              Splats& out) const {
   BsdfSample sample;
   Ray next;
-  if (!scatter(rays_, bsdf, LobeGroup::Rough, Transport::Photons, rng, sample, next)) return;
+  if (!scatter(accel_, bsdf, LobeGroup::Rough, Transport::Photons, rng, sample, next)) return;
   const float survive = std::min(1.0f, maxComponent(sample.weight));
   if (rng.next() >= survive) return;
   PhotonWalk walk({next.origin, next.direction, flux * sample.weight * (1.0f / survive)}, bounces_,
                   rng);
   for (SurfacePoint hit; walk.goesOn();) {
-    rays_.closestHit(walk.next().origin, walk.next().direction, hit);
-    walk.advance(rays_, hit, [&](const Bsdf& at, Vec3 arriving, bool) {
+    accel_.closestHit(walk.next().origin, walk.next().direction, hit);
+    walk.advance(accel_, hit, [&](const Bsdf& at, Vec3 arriving, bool) {
       connect(at.point(), arriving, photon, out);
     });
   }
@@ -200,13 +200,13 @@ void Caustics::connect(const SurfacePoint& vertex, Vec3 flux, const Photon& phot
   static const PixelFilter kPixel;
   // Pilots count photons, so each of theirs belongs to one pixel.
   const PixelFilter& filter = chosen_ ? filter_ : kPixel;
-  const auto film = connectToFilm(rays_, vertex, photon.lens, filter);
+  const auto film = connectToFilm(accel_, vertex, photon.lens, filter);
   if (!film) return;
   const float share =
       1.0f - sharedBy(film->perArea).ofRays(photon.light, -photon.start.direction, photon.guided);
   const Vec3 radiance = flux * film->value * (film->perArea * share);
   if (!isFinite(radiance)) return;
-  forPixelsAt(rays_.scene().film, filter, film->at, [&](uint32_t pixel, float value) {
+  forPixelsAt(accel_.scene().film, filter, film->at, [&](uint32_t pixel, float value) {
     out.list.push_back({pixel, radiance * value, lights_.group(photon.light)});
   });
 }

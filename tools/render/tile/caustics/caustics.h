@@ -35,7 +35,7 @@ class Caustics {
   // `photons`: > 0; the lights have power. `raysOfPixel`: near-field rays from each pixel, which
   // find the same light. `bounces`: rough vertices after the first. `groups`: light groups to tell
   // apart. Borrows rays and lights.
-  Caustics(const RayScene& rays, const LightSet& lights, const PixelFilter& filter,
+  Caustics(const Accelerator& accel, const LightSet& lights, const PixelFilter& filter,
            uint64_t photons, float raysOfPixel, unsigned bounces, uint64_t seed, uint32_t groups,
            const ProgressFn& progress);
 
@@ -73,7 +73,7 @@ class Caustics {
                      Splats& out) const;
   void connect(const SurfacePoint& vertex, Vec3 flux, const Photon& photon, Splats& out) const;
 
-  const RayScene& rays_;
+  const Accelerator& accel_;
   const LightSet& lights_;
   PixelFilter filter_;
   uint64_t photons_, key_;

@@ -20,12 +20,12 @@ constexpr double kMaxPrediction = 2.0;
 
 }  // namespace
 
-PixelControlVariate::PixelControlVariate(const RayScene& rays, const LightSet& lights,
+PixelControlVariate::PixelControlVariate(const Accelerator& accel, const LightSet& lights,
                                          const PixelFilter& filter, const PrimaryPoints& film,
                                          const VplTable& lit, const VplGroups& groups)
-    : scene_(rays.scene()),
+    : scene_(accel.scene()),
       field_(lit, groups),
-      pixels_(rays, lights, filter, film, predictedAt(film), kMinDeviation, kDimControlRays) {}
+      pixels_(accel, lights, filter, film, predictedAt(film), kMinDeviation, kDimControlRays) {}
 
 Vec3 PixelControlVariate::predicted(const SpecularPath& path) const {
   if (!path.rough) return {};

@@ -12,7 +12,7 @@ namespace bnvpl {
 class PixelControlVariate {
  public:
   // Borrows rays and lights.
-  PixelControlVariate(const RayScene& rays, const LightSet& lights, const PixelFilter& filter,
+  PixelControlVariate(const Accelerator& accel, const LightSet& lights, const PixelFilter& filter,
                       const PrimaryPoints& film, const VplTable& lit, const VplGroups& groups = {});
 
   // Adds to the indirect light of each sample, which saw the end of its path,

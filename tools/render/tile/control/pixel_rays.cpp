@@ -15,10 +15,10 @@ constexpr double kRays = 8, kMinRays = 2, kMaxRays = 32;
 
 }  // namespace
 
-PixelRays::PixelRays(const RayScene& rays, const LightSet& lights, const PixelFilter& filter,
+PixelRays::PixelRays(const Accelerator& accel, const LightSet& lights, const PixelFilter& filter,
                      const PrimaryPoints& film, std::span<const float> values, double minDeviation,
                      TileDimension dimension)
-    : rays_(rays),
+    : accel_(accel),
       lights_(lights),
       filter_(filter),
       width_(film.width),

@@ -19,7 +19,7 @@ class PixelRays {
   // `values`: the quantity along one ray of each pixel. The more it varies around a pixel, the more
   // rays each of the pixel's samples gets; none where its deviation is below `minDeviation` times
   // its mean. Borrows rays and lights.
-  PixelRays(const RayScene& rays, const LightSet& lights, const PixelFilter& filter,
+  PixelRays(const Accelerator& accel, const LightSet& lights, const PixelFilter& filter,
             const PrimaryPoints& film, std::span<const float> values, double minDeviation,
             TileDimension dimension);
 
@@ -43,13 +43,13 @@ class PixelRays {
           filter_.sample(rng.nextPoint(), {index, uint64_t{tile.samplesPerPixel} * rays, key});
       RadianceSample sample;
       const SpecularPath path =
-          traceCameraPath(rays_, lights_, x, y, at, rng, sample, specularLights, groups);
+          traceCameraPath(accel_, lights_, x, y, at, rng, sample, specularLights, groups);
       fn(path, sample, at.weight);
     }
   }
 
  private:
-  const RayScene& rays_;
+  const Accelerator& accel_;
   const LightSet& lights_;
   PixelFilter filter_;
   uint32_t width_;

@@ -41,12 +41,12 @@ DirectSamples::Light DirectSamples::sample(uint32_t x, uint32_t y, const Rays& r
   Rng rng = Rng::stratified(numbers.path, index);
   const PixelFilter::Sample at = filter_.sample(rng.nextPoint(), turn);
   RadianceSample seen;
-  const SpecularPath path = traceCameraPath(rays_, lights_, x, y, at, rng, seen,
+  const SpecularPath path = traceCameraPath(accel_, lights_, x, y, at, rng, seen,
                                             {rays.lights.strata, spatialLights_}, met);
   Light light{seen.emission, seen.direct, {}, {}};
   if (layers) *layers = seen;
   if (!path.rough) return light;
-  const Bsdf bsdf(rays_.scene(), path.hit);
+  const Bsdf bsdf(accel_.scene(), path.hit);
   if (layers) describeShadingPoint(bsdf, *layers);
   LearnedLight learned = rays.lights;
   LearnedStrata around;
@@ -58,7 +58,7 @@ DirectSamples::Light DirectSamples::sample(uint32_t x, uint32_t y, const Rays& r
   const LightNumbers random =
       learned.strata ? LightNumbers(index * learned.rays, numbers.light) : LightNumbers(rng);
   light.byLight =
-      path.throughput * directLight(rays_, lights_, Reflected{bsdf},
+      path.throughput * directLight(accel_, lights_, Reflected{bsdf},
                                     {learned, LightChoice::Each, {}, lit.times(path.throughput)},
                                     BsdfRays{bsdf, rays.bsdf}, random);
   light.byBsdf = bsdfRay(bsdf, path.throughput, rays, learned, rng, lit);
@@ -78,9 +78,9 @@ Vec3 DirectSamples::bsdfRay(const Bsdf& bsdf, Vec3 throughput, const Rays& rays,
                         learned,
                         {},
                         lit.times(throughput * next.weight * (1.0f / rays.bsdf))};
-  const Ray ray = rayOn(rays_, bsdf.point(), next);
+  const Ray ray = rayOn(accel_, bsdf.point(), next);
   SurfacePoint hit;
-  const Vec3 emission = rays_.closestHit(ray.origin, ray.direction, hit)
+  const Vec3 emission = accel_.closestHit(ray.origin, ray.direction, hit)
                             ? emissionHit(lights_, hit, arrival)
                             : emissionAtInfinity(lights_, next.wi, arrival);
   return throughput * next.weight * emission * (1.0f / rays.bsdf);

@@ -17,10 +17,10 @@ class DirectSamples {
   // pilot's samples are used for nothing else, so that the mean is unbiased. `alone`: camera
   // samples have no rays of their own; the direct samples also fill in depth, normal and albedo.
   // `visibleEmission` and `spatialLights` may be null.
-  DirectSamples(const RayScene& rays, const LightSet& lights, const PixelFilter& filter,
+  DirectSamples(const Accelerator& accel, const LightSet& lights, const PixelFilter& filter,
                 const VisibleEmission* visibleEmission, const SpatialLightSampler* spatialLights,
                 unsigned count, bool alone)
-      : rays_(rays),
+      : accel_(accel),
         lights_(lights),
         filter_(filter),
         visibleEmission_(visibleEmission),
@@ -76,7 +76,7 @@ class DirectSamples {
   void store(const TileSamples& tile, uint32_t pixel, const LearnedStrata* strata,
              const Pixel& from) const;
 
-  const RayScene& rays_;
+  const Accelerator& accel_;
   const LightSet& lights_;
   PixelFilter filter_;
   const VisibleEmission* visibleEmission_;

@@ -14,18 +14,18 @@ constexpr size_t kFilmTiles = 256;  // tiles, evenly spaced, whose mean stands f
 
 }  // namespace
 
-TileLightSampler::TileLightSampler(const RayScene& rays, const LightSet& lights,
+TileLightSampler::TileLightSampler(const Accelerator& accel, const LightSet& lights,
                                    std::function<SurfacePoint(size_t pixel)> shadingPoint,
                                    uint64_t raysOfTile, uint64_t seed, CostTrial* cost)
-    : rays_(rays),
+    : accel_(accel),
       lights_(lights),
       shadingPoint_(std::move(shadingPoint)),
       strata_(lights),
       raysEach_(std::clamp<uint64_t>(raysOfTile / 2 / std::max<size_t>(1, strata_.size()), 1,
                                      kMaxRaysEach)),
       key_(streamKey(seed, Stream::TileLightSampler)),
-      tilesX_((rays.scene().film.width + kTileSide - 1) / kTileSide),
-      tilesY_((rays.scene().film.height + kTileSide - 1) / kTileSide),
+      tilesX_((accel.scene().film.width + kTileSide - 1) / kTileSide),
+      tilesY_((accel.scene().film.height + kTileSide - 1) / kTileSide),
       cost_(cost),
       tiles_(tilesX_ * tilesY_) {
   if (strata_.size() < 2) return;
@@ -38,7 +38,7 @@ const StrataValues& TileLightSampler::estimate(size_t tile) const {
   Tile& t = tiles_[tile];
   std::call_once(t.estimated, [&] {
     const CostTrial::Unit part(cost_, cost_ ? cost_->partOfShared(9.0) : 1.0);
-    const Film& film = rays_.scene().film;
+    const Film& film = accel_.scene().film;
     const auto x0 = static_cast<uint32_t>(tile % tilesX_) * kTileSide,
                y0 = static_cast<uint32_t>(tile / tilesX_) * kTileSide;
     std::vector<SurfacePoint> points;
@@ -49,10 +49,10 @@ const StrataValues& TileLightSampler::estimate(size_t tile) const {
     std::vector<Bsdf> bsdfs;  // borrow the points
     bsdfs.reserve(points.size());
     for (const SurfacePoint& p : points) {
-      if (p.triangle != kNone) bsdfs.emplace_back(rays_.scene(), p);
+      if (p.triangle != kNone) bsdfs.emplace_back(accel_.scene(), p);
     }
     Rng rng(key_, tile);
-    t.found = estimateStrata(rays_, lights_, strata_, bsdfs, raysEach_, rng);
+    t.found = estimateStrata(accel_, lights_, strata_, bsdfs, raysEach_, rng);
   });
   return t.found;
 }

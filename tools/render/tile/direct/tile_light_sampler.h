@@ -17,7 +17,7 @@ class TileLightSampler {
   // `raysOfTile`: number of shadow rays of a tile's samples; learning takes half as many, within
   // bounds. `shadingPoint`: returns the shading point of a pixel. `cost` is set for a cost
   // estimate. Borrows rays and lights.
-  TileLightSampler(const RayScene& rays, const LightSet& lights,
+  TileLightSampler(const Accelerator& accel, const LightSet& lights,
                    std::function<SurfacePoint(size_t pixel)> shadingPoint, uint64_t raysOfTile,
                    uint64_t seed, CostTrial* cost = nullptr);
 
@@ -34,7 +34,7 @@ class TileLightSampler {
   const StrataValues& estimate(size_t tile) const;
   const StrataValues& learn(size_t tile) const;
 
-  const RayScene& rays_;
+  const Accelerator& accel_;
   const LightSet& lights_;
   std::function<SurfacePoint(size_t pixel)> shadingPoint_;
   LightStrata strata_;

@@ -80,10 +80,10 @@ struct FirstSegment {
 // hits(batch) with the hits of a batch, then follow(k, segment) for its k-th ray, which adds to
 // `out`. `misRays`: the number of rays from the shading point that MIS weights assume.
 template <typename Hits, typename Follow>
-void sendRays(const RayScene& scene, const RayOrigin& from, unsigned misRays, unsigned count,
+void sendRays(const Accelerator& accel, const RayOrigin& from, unsigned misRays, unsigned count,
               uint32_t first, uint64_t key, RayContributions& out, const Hits& hits,
               const Follow& follow) {
-  constexpr size_t kBatch = RayScene::kBatch;
+  constexpr size_t kBatch = Accelerator::kBatch;
   std::array<Ray, kBatch> rays;
   std::array<SurfacePoint, kBatch> found;
   std::array<FirstSegment, kBatch> segments;
@@ -95,7 +95,7 @@ void sendRays(const RayScene& scene, const RayOrigin& from, unsigned misRays, un
       BsdfSample next;
       Rng rng = Rng::stratified(key, first + k);
       if (!from.directions.sample(rng, next)) continue;
-      rays[alive] = rayOn(scene, point, next);
+      rays[alive] = rayOn(accel, point, next);
       segments[alive] = {next.wi,
                          from.throughput * next.weight,
                          {next.pdf * static_cast<float>(misRays), point.position, LightChoice::Each,
@@ -104,7 +104,7 @@ void sendRays(const RayScene& scene, const RayOrigin& from, unsigned misRays, un
                          rng};
       ++alive;
     }
-    scene.closestHits({rays.data(), alive}, found);
+    accel.closestHits({rays.data(), alive}, found);
     hits(std::span<const SurfacePoint>(found.data(), alive));
     for (size_t k = 0; k < alive; ++k) {
       const Vec3 before = out.indirect, vertexBefore = out.vertexLight;

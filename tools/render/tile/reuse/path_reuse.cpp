@@ -54,7 +54,7 @@ struct Connections {
 
   // Traces shadow rays to all vertices except a sample's own, which its ray has reached. Returns
   // their number.
-  size_t testVisibility(const RayScene& rays, std::span<const ReusingSample> group) {
+  size_t testVisibility(const Accelerator& accel, std::span<const ReusingSample> group) {
     std::vector<Segment> segments;
     std::vector<Connection*> tested;
     for (size_t v = 0; v < vertices.size(); ++v) {
@@ -63,13 +63,13 @@ struct Connections {
         const SurfacePoint& point = group[k].directions->bsdf().point();
         const Vec3 way = vertices[v]->position - point.position;
         const Vec3 side = dot(point.ng, way) > 0.0f ? point.ng : -point.ng;
-        segments.push_back({rays.offsetOrigin(point.position, side),
-                            rays.offsetOrigin(vertices[v]->position, vertices[v]->normal)});
+        segments.push_back({accel.offsetOrigin(point.position, side),
+                            accel.offsetOrigin(vertices[v]->position, vertices[v]->normal)});
         tested.push_back(&at(v, k));
       }
     }
     std::vector<uint8_t> hidden(segments.size());
-    rays.occluded(segments, hidden);
+    accel.occluded(segments, hidden);
     for (size_t s = 0; s < tested.size(); ++s)
       if (hidden[s]) tested[s]->visible = false;
     return segments.size();
@@ -78,9 +78,10 @@ struct Connections {
 
 }  // namespace
 
-size_t reuseVertices(const RayScene& rays, std::span<ReusingSample> group, uint32_t lightGroups) {
+size_t reuseVertices(const Accelerator& accel, std::span<ReusingSample> group,
+                     uint32_t lightGroups) {
   Connections connections(group, lightGroups);
-  const size_t shadowRays = connections.testVisibility(rays, group);
+  const size_t shadowRays = connections.testVisibility(accel, group);
   for (size_t v = 0; v < connections.vertices.size(); ++v) {
     float density = 0.0f;  // sum over k of n_k p_k(y)
     for (size_t k = 0; k < group.size(); ++k) {

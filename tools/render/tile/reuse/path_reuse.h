@@ -27,7 +27,7 @@
 
 #include "tools/render/compensate/compensate.h"
 #include "tools/render/tile/reuse/directions.h"
-#include "transport/rays.h"
+#include "transport/accelerator.h"
 
 namespace bnvpl {
 
@@ -52,7 +52,7 @@ struct ReusingSample {
 
 // Fills in the results. `lightGroups`: number of light groups that are told apart. Returns the
 // number of shadow rays.
-size_t reuseVertices(const RayScene& rays, std::span<ReusingSample> group,
+size_t reuseVertices(const Accelerator& accel, std::span<ReusingSample> group,
                      uint32_t lightGroups = 0);
 
 }  // namespace bnvpl

@@ -37,13 +37,13 @@ struct Segment {
 
 // Owns the acceleration structure; the Scene must outlive it. Queries are thread-safe.
 // Alpha masks are honoured by every query.
-class RayScene {
+class Accelerator {
  public:
   // Throws std::runtime_error when Embree cannot build.
-  explicit RayScene(const Scene& scene, Processor processor = Processor::This);
-  ~RayScene();
-  RayScene(const RayScene&) = delete;
-  RayScene& operator=(const RayScene&) = delete;
+  explicit Accelerator(const Scene& scene, Processor processor = Processor::This);
+  ~Accelerator();
+  Accelerator(const Accelerator&) = delete;
+  Accelerator& operator=(const Accelerator&) = delete;
 
   // Finds the nearest surface from `origin`, which the caller has offset off its surface, in the
   // unit direction. Returns false and sets hit.triangle to kNone if the ray leaves the scene.

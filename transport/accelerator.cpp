@@ -1,4 +1,4 @@
-#include "transport/rays.h"
+#include "transport/accelerator.h"
 
 #include "core/prefetch.h"
 #include "scene/material_inputs.h"
@@ -37,7 +37,7 @@ RTCRay makeRay(Vec3 origin, Vec3 direction, float tfar) {
 
 }  // namespace
 
-struct RayScene::Impl {
+struct Accelerator::Impl {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;  // the world: opaque, masked, and instances from kFirstInstance on
   std::vector<RTCScene> prototypes;
@@ -133,7 +133,7 @@ struct RayScene::Impl {
   }
 };
 
-RayScene::RayScene(const Scene& scene, Processor processor)
+Accelerator::Accelerator(const Scene& scene, Processor processor)
     : scene_(scene), impl_(std::make_unique<Impl>()) {
   impl_->exact = processor == Processor::Any;
   impl_->device = rtcNewDevice(impl_->exact ? "isa=sse2,ignore_config_files=1" : nullptr);
@@ -150,10 +150,10 @@ RayScene::RayScene(const Scene& scene, Processor processor)
   offsetBase_ = scene.offsetSize() * 0x1p-20f;
 }
 
-RayScene::~RayScene() = default;
+Accelerator::~Accelerator() = default;
 
 // Sets triangle, instance, distance, and u and v to the barycentric coordinates.
-bool RayScene::Impl::closestHit(const Scene& s, const Ray& ray, SurfacePoint& hit) const {
+bool Accelerator::Impl::closestHit(const Scene& s, const Ray& ray, SurfacePoint& hit) const {
   if (exact) return closestExactHit(ray, hit);
   RTCRayHit rh{};
   rh.ray = makeRay(ray.origin, ray.direction, std::numeric_limits<float>::infinity());
@@ -179,7 +179,7 @@ bool RayScene::Impl::closestHit(const Scene& s, const Ray& ray, SurfacePoint& hi
 }
 
 // The same, for Processor::Any.
-bool RayScene::Impl::closestExactHit(const Ray& ray, SurfacePoint& hit) const {
+bool Accelerator::Impl::closestExactHit(const Ray& ray, SurfacePoint& hit) const {
   RTCRayHit rh{};
   ExactQuery query{{}, std::numeric_limits<float>::infinity()};
   rh.ray = makeRay(ray.origin, ray.direction, query.reach);
@@ -193,7 +193,7 @@ bool RayScene::Impl::closestExactHit(const Ray& ray, SurfacePoint& hit) const {
 }
 
 // Completes a hit from its triangle, its distance, and the barycentric coordinates in u and v.
-void RayScene::describe(Vec3 direction, SurfacePoint& hit) const {
+void Accelerator::describe(Vec3 direction, SurfacePoint& hit) const {
   const Triangle& t = scene_.triangles[hit.triangle];
   Vec3 p0 = scene_.positions[t.position[0]], p1 = scene_.positions[t.position[1]],
        p2 = scene_.positions[t.position[2]];
@@ -230,13 +230,13 @@ void RayScene::describe(Vec3 direction, SurfacePoint& hit) const {
   }
 }
 
-bool RayScene::closestHit(Vec3 origin, Vec3 direction, SurfacePoint& hit) const {
+bool Accelerator::closestHit(Vec3 origin, Vec3 direction, SurfacePoint& hit) const {
   if (!impl_->closestHit(scene_, {origin, direction}, hit)) return false;
   describe(direction, hit);
   return true;
 }
 
-void RayScene::closestHits(std::span<const Ray> rays, std::span<SurfacePoint> hits) const {
+void Accelerator::closestHits(std::span<const Ray> rays, std::span<SurfacePoint> hits) const {
   for (size_t i = 0; i < rays.size(); ++i) {
     if (impl_->closestHit(scene_, rays[i], hits[i])) prefetch(&scene_.triangles[hits[i].triangle]);
   }
@@ -258,11 +258,11 @@ void RayScene::closestHits(std::span<const Ray> rays, std::span<SurfacePoint> hi
   }
 }
 
-bool RayScene::occluded(Vec3 from, Vec3 to) const {
+bool Accelerator::occluded(Vec3 from, Vec3 to) const {
   return impl_->occluded(makeRay(from, to - from, 1.0f));
 }
 
-void RayScene::occluded(std::span<const Segment> segments, std::span<uint8_t> hidden) const {
+void Accelerator::occluded(std::span<const Segment> segments, std::span<uint8_t> hidden) const {
   constexpr size_t kTogether = 8;  // as wide as AVX
   for (size_t begin = 0; begin < segments.size(); begin += kTogether) {
     const size_t count = std::min(kTogether, segments.size() - begin);
@@ -289,7 +289,7 @@ void RayScene::occluded(std::span<const Segment> segments, std::span<uint8_t> hi
   }
 }
 
-bool RayScene::occludedToInfinity(Vec3 from, Vec3 direction) const {
+bool Accelerator::occludedToInfinity(Vec3 from, Vec3 direction) const {
   return impl_->occluded(makeRay(from, direction, std::numeric_limits<float>::infinity()));
 }
 
