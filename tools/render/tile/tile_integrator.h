@@ -3,45 +3,10 @@
 // samples at once, and rays for indirect light whose vertices the samples reuse.
 #pragma once
 
-#include <memory>
-#include <optional>
-
-#include "tools/render/gather/gather.h"
 #include "tools/render/tile/allocation/sample_allocation.h"
-#include "tools/render/tile/caustics/caustics.h"
-#include "tools/render/tile/direct/direct_samples.h"
-#include "tools/render/tile/direct/tile_light_sampler.h"
-#include "tools/render/tile/reuse/indirect_rays.h"
-#include "transport/spatial_light_sampler.h"
-#include "transport/specular_path.h"
+#include "tools/render/tile/tile_parts.h"
 
 namespace bnvpl {
-
-// Adds a control variate, whose mean is 0, to the indirect light of a tile's samples. `paths`:
-// their camera paths.
-using ControlVariateFn =
-    std::function<void(const TileSamples& tile, std::span<const SpecularPath> paths)>;
-
-// Parts that are null or empty are left out.
-struct TileParts {
-  GatherTile gather;  // VPLs
-  bool gathersForFilter = false;  // a film filter smooths their light
-  bool gathersPixelSums = false;  // finds the sum over a pixel's samples
-  // Adds light that VPLs leave out to all samples at once. Returns the number of its rays.
-  std::function<size_t(const TileReceivers&, std::span<Gathered>)> compensate = {};
-  size_t gatherCounters = 0;     // the counters of compensation follow those of `gather`
-  bool countsContinued = false;  // its first counter is that of the rays from later vertices
-  std::unique_ptr<const IndirectRays> rays;
-  unsigned raysEach = 0;  // from each shading point
-  unsigned reuse = 1;     // samples in a group that reuses its vertices; 1: no reuse
-  std::unique_ptr<const TileLightSampler> lights;  // null: one shadow ray to each light
-  unsigned lightRays = 0;  // shadow rays sampled from what the tile has learned
-  std::unique_ptr<const VisibleEmission> visibleEmission;
-  std::unique_ptr<const Caustics> caustics;
-  ControlVariateFn control;
-  const SpatialLightSampler* spatialLights = nullptr;  // for near-specular vertices
-  std::optional<DirectSamples> directSamples;
-};
 
 // Immutable and thread-safe.
 class TileIntegrator {
@@ -53,8 +18,6 @@ class TileIntegrator {
   double render(const TileSamples& tile, const SampleAllocation& allocation) const;
 
  private:
-  struct ShadingPoints;
-  class TileIndirectRays;
   ShadingPoints traceCameraPaths(const TileSamples& tile, const LearnedLight& learned) const;
   Vec3 directAt(const Bsdf& bsdf, const LearnedLight& learned, uint32_t sampleIndex, uint64_t key,
                 Rng& rng, const GroupSink& groups) const;
