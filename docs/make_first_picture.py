@@ -10,21 +10,25 @@ stages, and the picture says how long that was.
 import argparse
 import os
 import subprocess
+import sys
 import tempfile
 from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 import OpenImageIO as oiio
-from PIL import Image, ImageDraw, ImageFont
+from PIL import Image, ImageDraw
 
 ROOT = Path(__file__).resolve().parents[1]
+sys.path.append(str(ROOT / "eval"))
+from picture_label import label  # noqa: E402 (after the path that it needs)
+
 SCENE = ROOT / "scenes/gltf-room/room.glb"
 PICTURE = ROOT / "docs/images/room.jpg"
 WIDTH, HEIGHT = 1600, 900
 SPP = "4"
 EXPOSURE = "0"
-FONT = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf"
+LABEL = 24  # pixels
 
 
 class Tools:
@@ -43,14 +47,6 @@ class Tools:
 
 def pixels_of(path: Path) -> npt.NDArray[np.uint8]:
     return np.asarray(oiio.ImageBuf(str(path)).get_pixels(oiio.UINT8))[:, :, :3]
-
-
-def label(image: Image.Image, x: int, text: str) -> None:
-    draw = ImageDraw.Draw(image, "RGBA")
-    font = ImageFont.truetype(FONT, 24)
-    left, top, right, bottom = draw.textbbox((x + 16, HEIGHT - 48), text, font=font)
-    draw.rectangle((left - 8, top - 6, right + 8, bottom + 6), fill=(0, 0, 0, 160))
-    draw.text((x + 16, HEIGHT - 48), text, font=font, fill="white")
 
 
 def main() -> None:
@@ -84,9 +80,9 @@ def main() -> None:
     draw = ImageDraw.Draw(image)
     for k in (1, 2):
         draw.line((k * WIDTH // 3, 0, k * WIDTH // 3, HEIGHT), fill="white", width=2)
-    label(image, 0, f"path tracer, {path_s:.0f} CPU s")
-    label(image, WIDTH // 3, f"bnvpl, {cpu_s:.0f} CPU s")
-    label(image, 2 * WIDTH // 3, "its VPLs")
+    label(image, 0, HEIGHT, f"path tracer, {path_s:.0f} CPU s", LABEL)
+    label(image, WIDTH // 3, HEIGHT, f"bnvpl, {cpu_s:.0f} CPU s", LABEL)
+    label(image, 2 * WIDTH // 3, HEIGHT, "its VPLs", LABEL)
     image.save(PICTURE, quality=92)
     print(f"{PICTURE}: path tracer {path_s:.1f} CPU s with {spp} spp, ours {cpu_s:.1f} CPU s")
 

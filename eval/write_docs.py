@@ -24,6 +24,7 @@ from PIL import Image
 
 import results_page
 from bnvpl_eval import images, output, settings
+from picture_label import label
 
 DOCS = settings.ROOT / "docs"
 GAP = 4  # pixels of white between two pictures
@@ -35,6 +36,17 @@ STRIPS = {
     "scatter": ["reference", "local", "even", "literal"],
     "equal-time": ["path", "local", "reference"],
 }
+LABELS = {
+    "reference": "reference",
+    "light": "from the light",
+    "random": "random",
+    "uniform": "uniform (thesis)",
+    "local": "local (ours)",
+    "even": "the thesis' scatter",
+    "literal": "the thesis to the letter",
+    "path": "path tracer",
+}
+LABEL_SIZE = 15  # pixels
 OVERLAYS = {"dots-u-shape": ["dots-random", "dots-local"], "cuts-sponza": ["cut", "cut-lightcuts"]}
 LEAST_WIDTH = 480  # minimum width of an overlay; smaller ones are enlarged by an integer
 METHODS = ["light", "random", "uniform", "local"]
@@ -174,6 +186,12 @@ def save_png(pixels: npt.NDArray[Any], target: Path, **how: Any) -> None:
     )
 
 
+def labelled(name: str, picture: npt.NDArray[Any]) -> npt.NDArray[Any]:
+    image = Image.fromarray(picture)
+    label(image, 0, image.height, LABELS[name], LABEL_SIZE)
+    return np.asarray(image)
+
+
 def write_strip(folder: Path, view: dict[str, Any], names: list[str], target: Path) -> None:
     """Writes ours and the reference in full at one exposure, above crops where `names` differ."""
     found = {image["id"]: folder / image["files"]["full"] for image in view["images"]}
@@ -193,7 +211,12 @@ def write_strip(folder: Path, view: dict[str, Any], names: list[str], target: Pa
         for name in names
     ]
     full[0] = framed(full[0], top, left, height, width)
-    save_png(below([beside(full), beside(crops)]), target, optimize=True)
+    rows = [[*zip(FULL, full, strict=True)], [*zip(names, crops, strict=True)]]
+    save_png(
+        below([beside([labelled(name, picture) for name, picture in row]) for row in rows]),
+        target,
+        optimize=True,
+    )
 
 
 def write_overlays(folder: Path, view: dict[str, Any], names: list[str], target: Path) -> None:
@@ -225,8 +248,9 @@ def write_summary(results: dict[str, Any]) -> None:
         "mean ratio, ours | CPU s |",
         "|---" * 7 + "|",
     ]
-    scenes, _ = settings.load()
-    for scene in scenes:
+    scenes, table = settings.load()
+    wanted = table["size"]["standard"]["scenes"]
+    for scene in (scene for scene in scenes if scene.id in wanted):
         if (f"{scene.id}-main", METHODS[0]) not in rows:
             raise SystemExit(
                 f"eval: the README's summary wants {scene.title}, which the run has left out"

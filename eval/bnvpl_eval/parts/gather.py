@@ -1,4 +1,4 @@
-"""Compares all gathers of vpl-render on the same lit files, at equal samples and at equal time.
+"""Compares gathers of vpl-render on the same lit files, at equal samples and at equal time.
 
 At equal time each gather takes as many samples a pixel as fit in the time of the slowest, so that
 noise counts beside its own error. Near-field rays are off, as they cost the same for all gathers.
@@ -25,8 +25,8 @@ MOST_SPP = 256  # bound on the samples a pixel at equal time
 
 def run(context: Context) -> None:
     rows = []
-    gathers = pipeline.methods_of(context.runner, "vpl-render", "gather")
     plan = context.size["gather"]
+    gathers = plan["gathers"]
     seeds = range(1, 1 + plan["seeds"])
     for view in (view for view in context.views("main") if view.scene.id in plan["scenes"]):
         context.say(f"gather: {view.name}")
