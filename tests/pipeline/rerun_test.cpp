@@ -135,8 +135,12 @@ TEST_F(Rerun, NamesThatMakeOrNinjaMisreadAreRefusedAtOnce) {
     fail("vpl-place",
          path("veach-door/scene.toml") + " --quiet -n 1k -o " + path("c.vpl") + " --depfile " +
              path("c.d"),
-         2, {"--depfile: Make and ninja cannot read the name", "rename it"});
+         3, {"--depfile: Make and ninja cannot read the name", "rename it"});
   }
+  fail("vpl-place",
+       path("veach-door/scene.toml") + " --quiet -n 1k -o '" + path("c*.vpl") + "' --depfile " +
+           path("c.d"),
+       2, {"--depfile: Make and ninja cannot read the name", "rename it"});
   EXPECT_FALSE(fs::exists(at("c.vpl")));
 }
 

@@ -4,8 +4,6 @@
 #include <set>
 #include <string_view>
 
-#include "core/errors.h"
-
 namespace bnvpl {
 namespace {
 
@@ -32,7 +30,7 @@ std::string escaped(const fs::path& file) {
 
 }  // namespace
 
-void requireDepfileName(const fs::path& file) {
+std::string depfileProblem(const fs::path& file) {
   const std::string name = file.string();
   // Make and ninja read all other characters literally, except blanks, which are escaped.
   constexpr std::string_view kSpecial = "#$%*:;<=>?[\\]^`{|}~";
@@ -41,9 +39,9 @@ void requireDepfileName(const fs::path& file) {
     return byte >= ' ' && byte != 0x7f && kSpecial.find(c) == std::string_view::npos;
   });
   // Make reads "A&:" as a grouped rule and "A(B)" as a member of an archive.
-  if (plain && !name.ends_with('&') && !name.ends_with(')') && !name.ends_with(' ')) return;
-  throw UsageError("--depfile: Make and ninja cannot read the name '" + name +
-                   "'; rename it, to letters, digits, blanks and ! \" & ' ( ) + , - . @ _");
+  if (plain && !name.ends_with('&') && !name.ends_with(')') && !name.ends_with(' ')) return {};
+  return "--depfile: Make and ninja cannot read the name '" + name +
+         "'; rename it, to letters, digits, blanks and ! \" & ' ( ) + , - . @ _";
 }
 
 void addDepfile(OutputSet& outputs, const fs::path& depfile, const fs::path& target,

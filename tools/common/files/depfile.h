@@ -1,14 +1,15 @@
 // Dependency files for Make and ninja: "target: file file ...".
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "formats/atomic_file.h"
 
 namespace bnvpl {
 
-// Throws UsageError for a file whose name Make or ninja cannot read in a depfile.
-void requireDepfileName(const fs::path& file);
+// Problem and cure of a file whose name Make or ninja cannot read in a depfile; else empty.
+std::string depfileProblem(const fs::path& file);
 
 // Adds a depfile to the outputs of a run. A missing file is replaced by its nearest existing
 // folder, which changes when the file appears. Does nothing if `depfile` is empty.

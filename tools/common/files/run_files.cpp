@@ -6,6 +6,7 @@
 #include <map>
 #include <tuple>
 
+#include "core/errors.h"
 #include "core/files.h"
 #include "formats/output_target.h"
 #include "tools/common/files/depfile.h"
@@ -158,8 +159,12 @@ void RunFiles::checkDepfileNames() const {
     return std::ranges::find(out.kinds, OutputKind::Depfile) != out.kinds.end();
   });
   if (!asked) return;
-  for (const Named& in : inputs_) requireDepfileName(in.file);
-  for (const Named& out : outputs_) requireDepfileName(out.file);
+  for (const Named& in : inputs_)  // scenes name most of them
+    if (const std::string problem = depfileProblem(in.file); !problem.empty())
+      throw InputError(problem);
+  for (const Named& out : outputs_)
+    if (const std::string problem = depfileProblem(out.file); !problem.empty())
+      throw UsageError(problem);
 }
 
 // A checkpoint, which has no kinds, is meant to be found.
