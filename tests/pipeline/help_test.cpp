@@ -122,6 +122,15 @@ TEST_F(Help, MethodsAreListedWithOptionsAndNeeds) {
   EXPECT_EQ(needsOf("vpl-render", "path"), HelpJson::array());
 }
 
+// OpenVDB takes some 35 ms to load, more than all other libraries together.
+TEST_F(Help, StartsWithoutOpenVdbUnlessItEliminates) {
+  for (const std::string& name : kTools) {
+    const std::string libraries = shell("ldd '" BNVPL_BIN "/" + name + "'").out;
+    EXPECT_TRUE(contains(libraries, "libembree")) << name << libraries;
+    EXPECT_EQ(contains(libraries, "libopenvdb"), name == "vpl-eliminate") << name;
+  }
+}
+
 TEST_F(Help, FitsAPageAndHasExamples) {
   for (const std::string& name : kTools) {
     const std::string page = tool(name, "--help").out;

@@ -137,8 +137,9 @@ TEST_F(Rerun, NamesThatMakeOrNinjaMisreadAreRefusedAtOnce) {
              path("c.d"),
          3, {"--depfile: Make and ninja cannot read the name", "rename it"});
   }
+  write("veach-door/room.mtl", mtl);
   fail("vpl-place",
-       path("veach-door/scene.toml") + " --quiet -n 1k -o '" + path("c*.vpl") + "' --depfile " +
+       path("veach-door/scene.toml") + " --quiet -n 1k -o " + path("c*.vpl") + " --depfile " +
            path("c.d"),
        2, {"--depfile: Make and ninja cannot read the name", "rename it"});
   EXPECT_FALSE(fs::exists(at("c.vpl")));
