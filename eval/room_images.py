@@ -12,7 +12,7 @@ import numpy.typing as npt
 sys.path.append(str(Path(__file__).resolve().parents[1] / "pipelines"))
 import gallery
 import stage_options
-from bnvpl_eval import images, settings, stage_runs
+from bnvpl_eval import images, pipeline, settings, stage_runs
 from bnvpl_eval.runner import Run, Runner
 
 
@@ -84,9 +84,8 @@ class Rooms:
         self, scene: gallery.Scene, setting: str, other: str, seconds: float
     ) -> tuple[Path, int]:
         """The image of another integrator, with the samples a pixel that fit in `seconds`."""
-        few, more = (self.by_samples(scene, setting, other, spp)[1] for spp in (4, 20))
-        per_sample = max(1e-3, more - few) / 16
-        spp = max(1, round((seconds - max(0.0, few - 4 * per_sample)) / per_sample))
+        few, many = ((spp, self.by_samples(scene, setting, other, spp)[1]) for spp in (4, 20))
+        spp = max(1, round(pipeline.samples_within(seconds, few, many)))
         return self.by_samples(scene, setting, other, spp)[0], spp
 
     def by_samples(

@@ -44,6 +44,22 @@ class PageCase(unittest.TestCase):
     def setUp(self) -> None:
         self.open(1280, "light")
 
+    def words_outside(self, drawing: str, above: int = 1) -> Any:
+        """Words of the drawings that a selector names, which leave it by more than a pixel, or by
+        more than `above` pixels at top and bottom."""
+        return self.js(
+            """
+            const [drawing, above] = arguments;
+            return [...document.querySelectorAll(drawing + ' text')].filter((text) => {
+              const frame = text.closest('svg').getBoundingClientRect();
+              const box = text.getBoundingClientRect();
+              return box.left < frame.left - 1 || box.right > frame.right + 1
+                  || box.top < frame.top - above || box.bottom > frame.bottom + above;
+            }).map((text) => text.textContent)""",
+            drawing,
+            above,
+        )
+
     def tearDown(self) -> None:
         found = [entry["message"] for entry in self.driver.get_log("browser")]
         self.assertEqual(found, [], "the console is not silent")

@@ -70,14 +70,7 @@ class PageTest(PageCase):
                 ),
                 2,
             )
-            outside = self.js("""
-                return [...document.querySelectorAll('svg.plot text')].filter((text) => {
-                  const frame = text.closest('svg').getBoundingClientRect();
-                  const box = text.getBoundingClientRect();
-                  return box.left < frame.left - 1 || box.right > frame.right + 1
-                      || box.top < frame.top - 1 || box.bottom > frame.bottom + 1;
-                }).map((text) => text.textContent)""")
-            self.assertEqual(outside, [], "texts outside of their plot")
+            self.assertEqual(self.words_outside("svg.plot"), [], "texts outside of their plot")
         box = self.all("#table-sum .scroll")[0]
         self.assertGreater(
             self.js("return arguments[0].scrollWidth", box),

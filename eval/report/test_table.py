@@ -94,14 +94,7 @@ class TableTest(PageCase):
                 self.assertLessEqual(max(drawing["right"], text["right"]), width)
 
     def test_words_of_a_diagram_lie_within_it(self) -> None:
-        outside = self.js("""
-            return [...document.querySelectorAll('svg.diagram text')].filter((text) => {
-              const frame = text.closest('svg').getBoundingClientRect();
-              const box = text.getBoundingClientRect();
-              return box.left < frame.left - 1 || box.right > frame.right + 1
-                  || box.top < frame.top - 2 || box.bottom > frame.bottom + 2;
-            }).map((text) => text.textContent)""")
-        self.assertEqual(outside, [])
+        self.assertEqual(self.words_outside("svg.diagram", above=2), [])
 
     def test_another_row_takes_the_viewer(self) -> None:
         first, second = self.all("#table-field button.picture")[:2]

@@ -33,13 +33,11 @@ TRIAL_SPP = 2, 16  # samples of two images whose times yield those of a sample a
 
 
 def picture_spp(context: Context, view: View, c: pipeline.Configuration, target_s: float) -> int:
-    few, many = TRIAL_SPP
-    few_s, many_s = (
-        pipeline.traced(context.runner, view, c.film, spp, 1)[1][0].cpu_s for spp in TRIAL_SPP
+    few, many = (
+        (spp, pipeline.traced(context.runner, view, c.film, spp, 1)[1][0].cpu_s)
+        for spp in TRIAL_SPP
     )
-    sample_s = max((many_s - few_s) / (many - few), 1e-6)
-    loading_s = max(0.0, few_s - few * sample_s)
-    return max(1, round((target_s - loading_s) / sample_s))
+    return max(1, round(pipeline.samples_within(target_s, few, many)))
 
 
 def balanced(c: pipeline.Configuration, size: dict[str, Any]) -> pipeline.Configuration:

@@ -152,8 +152,8 @@ def fitting_spp(cpu_s: Callable[[int], float], few: int, time_s: float) -> int:
     if few_s > time_s:
         return round(few * time_s / few_s)
     many = min(max(math.floor(few * time_s / few_s), 2 * few), MAX_SPP)
-    sample_s = max((cpu_s(many) - few_s) / (many - few), time_s / MAX_SPP)
-    return min(MAX_SPP, round(few + (time_s - few_s) / sample_s))
+    fitting = pipeline.samples_within(time_s, (few, few_s), (many, cpu_s(many)))
+    return min(MAX_SPP, round(fitting))
 
 
 def expected_s(rows: list[dict[str, Any]], count: int) -> float:

@@ -28,13 +28,22 @@ def draw_descent(d: Drawing, node: Node, leaf: int, colour: str) -> None:
         node = below
 
 
+def draw_cut(
+    d: Drawing, cut: list[Node], rays: list[tuple[Point, list[int]]], descents: bool = False
+) -> None:
+    """The tree with its cut, and a ray from each receiver to its leaf of each cluster."""
+    outline_clusters(d, cut)
+    LIGHTS.draw(d, cut)
+    for receiver, leaves in rays:
+        for node, k, colour in zip(cut, leaves, CLUSTERS, strict=False):
+            if descents:
+                draw_descent(d, node, k, colour)
+            d.ray(receiver, LIGHTS.leaf(k), colour)
+    draw_lights(d, cut, {k for _, leaves in rays for k in leaves})
+
+
 def lightcuts(d: Drawing) -> None:
-    chosen = [1, 4, 7]
-    outline_clusters(d, CUT)
-    LIGHTS.draw(d, CUT)
-    for k, colour in zip(chosen, CLUSTERS, strict=False):
-        d.ray(RECEIVER, LIGHTS.leaf(k), colour)
-    draw_lights(d, CUT, set(chosen))
+    draw_cut(d, CUT, [(RECEIVER, [1, 4, 7])])
     d.receiver(RECEIVER)
     d.text((4, 9), "a cut for\neach sample")
     d.text((4, 112), "a ray for\neach cluster")
@@ -42,29 +51,22 @@ def lightcuts(d: Drawing) -> None:
 
 
 def tilecuts(d: Drawing) -> None:
-    chosen = {88: (0, 5, 6), 120: (3, 4, 7), 152: (2, 5, 7)}
-    outline_clusters(d, CUT)
-    LIGHTS.draw(d, CUT)
-    for x, leaves in chosen.items():
-        for k, colour in zip(leaves, CLUSTERS, strict=False):
-            d.ray((x, 112), LIGHTS.leaf(k), colour)
-    draw_lights(d, CUT, {k for leaves in chosen.values() for k in leaves})
+    rays: list[tuple[Point, list[int]]] = [
+        ((88, 112), [0, 5, 6]),
+        ((120, 112), [3, 4, 7]),
+        ((152, 112), [2, 5, 7]),
+    ]
+    draw_cut(d, CUT, rays)
     d.box((72, 103), (96, 22), STRONG, 0.12)
-    for x in chosen:
-        d.receiver((x, 112))
+    for receiver, _ in rays:
+        d.receiver(receiver)
     d.text((4, 9), "one cut for\na tile")
     d.text((4, 114), "tile")
     d.text((236, 103), "each draws\nVPLs of\nits own", "end")
 
 
 def stochastic(d: Drawing) -> None:
-    chosen = [2, 4, 7]
-    outline_clusters(d, CUT)
-    LIGHTS.draw(d, CUT)
-    for node, k, colour in zip(CUT, chosen, CLUSTERS, strict=False):
-        draw_descent(d, node, k, colour)
-        d.ray(RECEIVER, LIGHTS.leaf(k), colour)
-    draw_lights(d, CUT, set(chosen))
+    draw_cut(d, CUT, [(RECEIVER, [2, 4, 7])], descents=True)
     d.receiver(RECEIVER)
     d.text((4, 9), "random\ndescents")
     d.text((4, 112), "a ray for\neach draw")
@@ -72,14 +74,9 @@ def stochastic(d: Drawing) -> None:
 
 
 def adaptive_tree(d: Drawing) -> None:
-    cut, chosen = [Node(2, 0), Node(0, 4), Node(0, 5), Node(1, 3)], [1, 4, 5, 6]
+    cut = [Node(2, 0), Node(0, 4), Node(0, 5), Node(1, 3)]
     receiver = (160.0, 112.0)
-    outline_clusters(d, cut)
-    LIGHTS.draw(d, cut)
-    for node, k, colour in zip(cut, chosen, CLUSTERS, strict=True):
-        draw_descent(d, node, k, colour)
-        d.ray(receiver, LIGHTS.leaf(k), colour)
-    draw_lights(d, cut, set(chosen))
+    draw_cut(d, cut, [(receiver, [1, 4, 5, 6])], descents=True)
     for k in range(8):
         x, y = LIGHTS.leaf(k)
         d.arrow((x, y), (x + 10, y + 10) if k < 4 else (x, y + 14), MUTED)
