@@ -70,6 +70,20 @@ TEST_F(Combinations, EveryGatherInPassesAndCrops) {
   }
 }
 
+// Its layer is asked for beside a combination that is refused, which is what the user hears of.
+TEST(LayersOfGathers, ACombinationIsRefusedBeforeItsLayer) {
+  try {
+    resolveRender({{"light", "spherical"},
+                   {"gather", "all"},
+                   {"compensate", "local"},
+                   {"layers", "sampledpairs"}});
+    ADD_FAILURE();
+  } catch (const UsageError& error) {
+    EXPECT_NE(std::string(error.what()).find("--compensate local"), std::string::npos)
+        << error.what();
+  }
+}
+
 TEST(LayersOfGathers, ALayerOfAnotherGatherNamesThatGather) {
   for (const GatherMethod* gather : gatherMethods()) {
     for (const Counter& counter : gather->counters) {

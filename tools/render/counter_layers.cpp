@@ -7,6 +7,7 @@
 
 #include "core/errors.h"
 #include "tools/render/integrator/integrator.h"
+#include "tools/render/integrator/light_kind.h"
 
 namespace bnvpl {
 
@@ -42,7 +43,7 @@ std::vector<Counter> countersOf(const GatherMethod& gather, const CompensateMeth
                                 LightKind light) {
   std::vector<Counter> counters(gather.counters.begin(), gather.counters.end());
   counters.insert(counters.end(), compensate.counters.begin(), compensate.counters.end());
-  if (compensate.oneSize) return counters;  // it takes no light that is not seen from its centre
+  if (compensate.oneSize) return counters;  // requireTakenLight() refuses such light
   const std::span<const Counter> own = lightCounters(light);
   counters.insert(counters.end(), own.begin(), own.end());
   return counters;

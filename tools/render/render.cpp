@@ -12,6 +12,7 @@
 #include "tools/render/film/tiles.h"
 #include "tools/render/gather/gather.h"
 #include "tools/render/image_camera.h"
+#include "tools/render/integrator/light_kind.h"
 #include "tools/render/integrator/tile_options.h"
 #include "tools/render/stage_options.h"
 
@@ -158,6 +159,7 @@ Values resolveRender(const Given& given) {
   const bool limited = textGiven(given, kSppOption.name) != nullptr;
   if (byPasses(options) && !limited) options.set(kSppOption, static_cast<uint64_t>(kUnlimitedSpp));
   budgetOf(options);  // its errors belong to the command line
+  requireTakenLight(options);
   return options;
 }
 

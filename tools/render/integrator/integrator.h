@@ -14,7 +14,6 @@
 #include "tools/render/pixel_filter.h"
 #include "transport/accelerator.h"
 #include "transport/lights.h"
-#include "transport/virtual_light_kinds.h"
 #include "transport/vpl_groups.h"
 
 namespace bnvpl {
@@ -54,12 +53,6 @@ inline constexpr OptionKey<std::string> kFirefliesKey = firefliesOption({}).key(
 // Whether fireflies are redistributed; false for methods without the option.
 inline bool redistributesFireflies(const Values& options) {
   return options.has(kFirefliesKey) && options[kFirefliesKey] == "redistribute";
-}
-
-inline constexpr OptionKey<std::string> kLightKindKey{"light"};
-// The kind of light of a run; the default kind for methods without the option.
-inline LightKind lightKindOf(const Values& options) {
-  return options.has(kLightKindKey) ? lightKindNamed(options[kLightKindKey]) : LightKind{};
 }
 
 // The gather of a run; null where nothing is gathered.

@@ -5,6 +5,7 @@
 
 #include "tools/common/files/streams.h"
 #include "tools/render/gather/point_gather.h"
+#include "tools/render/integrator/light_kind.h"
 #include "tools/render/integrator/tile_options.h"
 #include "tools/render/integrator/vpl/near_field_rays.h"
 #include "tools/render/stage_options.h"
@@ -94,27 +95,6 @@ Gather makeGather(const IntegratorInputs& in, const Values& options, const FilmR
   return gather;
 }
 
-// The kind of light, unless the gather or the compensation cannot take it.
-LightKind lightOf(const Values& options, const CompensateMethod* compensate) {
-  const std::string& name = options[kLightOption];
-  const LightKind kind = lightKindOf(options);
-  if (isFromCentre(kind)) return kind;
-  const GatherMethod* gather = gatherOf(options);
-  if (gather && !gather->everyLight) {
-    std::string others;
-    for (const GatherMethod* m : gatherMethods())
-      if (m->everyLight) others += (others.empty() ? "" : ", ") + std::string(m->name);
-    throw UsageError("--light " + name + ": the bounds of --gather " + std::string(gather->name) +
-                     " hold for VPLs seen from their centre only; choose another gather (" +
-                     others + ") or another light");
-  }
-  if (compensate && compensate->oneSize)
-    throw UsageError("--light " + name + " removes no light that --compensate " +
-                     std::string(compensate->name) +
-                     " could add back; choose another compensation or another light");
-  return kind;
-}
-
 // Adds compensation for all samples of a tile at once, where the method has it, and the counters of
 // compensation.
 void addTileCompensation(const IntegratorInputs& in, const Values& options,
@@ -144,7 +124,7 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   const float clamp = indirect ? options.real32(kClampOption) : 1.0f;
   const auto parts = std::make_shared<Parts>();
   const CompensateMethod* compensate = compensationOf(options);
-  const LightKind light = indirect ? lightOf(options, compensate) : LightKind{};
+  const LightKind light = indirect ? lightKindOf(options) : LightKind{};
   parts->vpls = makeVplLights(in.lit, in.accel, clamp, light, in.litGroups,
                               compensate && compensate->oneSize ? commonRadius(in.lit) : 0.0f);
   Compensation compensation;

@@ -1,0 +1,14 @@
+// The kind of virtual light of a run, and whether its gather and compensation take it.
+#pragma once
+
+#include "tools/common/options/option.h"
+#include "transport/virtual_light_kinds.h"
+
+namespace bnvpl {
+
+// The default kind for methods without the option.
+LightKind lightKindOf(const Values& options);
+// Throws UsageError if the gather or the compensation cannot take the kind of light.
+void requireTakenLight(const Values& options);
+
+}  // namespace bnvpl
