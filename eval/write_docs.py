@@ -186,37 +186,46 @@ def save_png(pixels: npt.NDArray[Any], target: Path, **how: Any) -> None:
     )
 
 
-def labelled(name: str, picture: npt.NDArray[Any]) -> npt.NDArray[Any]:
+def labelled(text: str, picture: npt.NDArray[Any]) -> npt.NDArray[Any]:
     image = Image.fromarray(picture)
-    label(image, 0, image.height, LABELS[name], LABEL_SIZE)
+    label(image, 0, image.height, text, LABEL_SIZE)
     return np.asarray(image)
 
 
+def stops_down(radiance: npt.NDArray[Any], scale: float) -> int:
+    """Stops by which a crop must be darkened for half of it not to be white; mostly 0."""
+    median = float(np.median(radiance.max(axis=2))) * scale
+    return max(0, math.ceil(math.log2(median))) if median > 0 else 0
+
+
+def labelled_crop(name: str, radiance: npt.NDArray[Any], scale: float) -> npt.NDArray[Any]:
+    stops = stops_down(radiance, scale)
+    picture = srgb(radiance, scale / 2**stops)
+    text = LABELS[name] + (f", −{stops} EV" if stops else "")
+    return labelled(text, picture.repeat(ENLARGED, axis=0).repeat(ENLARGED, axis=1))
+
+
 def write_strip(folder: Path, view: dict[str, Any], names: list[str], target: Path) -> None:
-    """Writes ours and the reference in full at one exposure, above crops where `names` differ."""
+    """Writes ours and the reference in full at one exposure, above crops where `names` differ.
+
+    Crops that would be white are darkened, and say so.
+    """
     found = {image["id"]: folder / image["files"]["full"] for image in view["images"]}
     reference = images.read(found["reference"])
     # The scale maps the logarithmic mean to middle grey, as vpl-render --exposure auto does.
     luminance = reference @ np.array([0.2126, 0.7152, 0.0722])
     scale = 0.18 / np.exp(np.log(luminance[luminance > 0]).mean())
-    shown = {name: srgb(images.read(found[name]), scale) for name in names}
+    radiance = {name: images.read(found[name]) for name in names}
+    shown = {name: srgb(pixels, scale) for name, pixels in radiance.items()}
     full = [shown[name] for name in FULL]
     width = (2 * full[0].shape[1] + GAP - (len(names) - 1) * GAP) // len(names) // ENLARGED
     height = width * 3 // 4
     top, left = telling_window([shown[name] for name in names], height, width)
-    crops = [
-        shown[name][top : top + height, left : left + width]
-        .repeat(ENLARGED, axis=0)
-        .repeat(ENLARGED, axis=1)
-        for name in names
-    ]
+    window = np.s_[top : top + height, left : left + width]
+    crops = [labelled_crop(name, radiance[name][window], scale) for name in names]
     full[0] = framed(full[0], top, left, height, width)
-    rows = [[*zip(FULL, full, strict=True)], [*zip(names, crops, strict=True)]]
-    save_png(
-        below([beside([labelled(name, picture) for name, picture in row]) for row in rows]),
-        target,
-        optimize=True,
-    )
+    whole = [labelled(LABELS[name], picture) for name, picture in zip(FULL, full, strict=True)]
+    save_png(below([beside(whole), beside(crops)]), target, optimize=True)
 
 
 def write_overlays(folder: Path, view: dict[str, Any], names: list[str], target: Path) -> None:

@@ -8,6 +8,8 @@ from pathlib import Path
 from typing import Any
 from unittest import mock
 
+import numpy as np
+
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import write_docs  # noqa: E402 (after the path that it needs)
 
@@ -29,6 +31,12 @@ def report(*ids: str) -> dict[str, Any]:
         "scenes": [],
         "provenance": {"commits of the runs": "abc1234", "date": "2026-11-22"},
     }
+
+
+class Crops(unittest.TestCase):
+    def test_only_what_would_be_white_is_darkened(self) -> None:
+        for light, stops in ((0.0, 0), (0.9, 0), (1.5, 1), (10.0, 4)):
+            self.assertEqual(write_docs.stops_down(np.full((4, 4, 3), light / 2), 2.0), stops)
 
 
 class Tables(unittest.TestCase):
