@@ -15,7 +15,9 @@ def main() -> int:
     parser.add_argument("--bin", type=Path, default=settings.ROOT / "build/release/bin")
     parser.add_argument("--cache", type=Path, default=settings.ROOT / "build/eval/cache")
     parser.add_argument("--film-width", type=int, default=80, help="pixels")
-    parser.add_argument("--spp", type=int, help="of a half; settings.toml's unless given")
+    parser.add_argument(
+        "--spp", type=int, help="of a half; those of settings.toml, for 80 pixels, unless given"
+    )
     arguments = parser.parse_args()
     runner = Runner(arguments.bin.resolve(), arguments.cache.resolve())
     scenes, _ = settings.load()
@@ -28,7 +30,8 @@ def main() -> int:
             continue
         film = view.scene.film(arguments.film_width)
         for half in "ab":
-            references.render_half(runner, view, film, arguments.spp or view.reference_spp, half)
+            spp = arguments.spp or references.spp_of(view, arguments.film_width)
+            references.render_half(runner, view, film, spp, half)
         references.require(view, film)
         halves = references.load(view, film, "indirect")
         print(

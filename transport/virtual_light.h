@@ -30,6 +30,12 @@ struct VplLights {
   }
 
   size_t size() const { return position.size(); }
+
+  // Holds all points that entry i shines from: its position, or its sphere.
+  Bounds box(size_t i) const {
+    const Vec3 reach(isFromCentre(kind) ? 0.0f : std::sqrt(clamp2[i]));
+    return {position[i] - reach, position[i] + reach};
+  }
 };
 
 // `clamp` is in units of each VPL's radius (r_max), or of `oneRadius` if that is not 0. `groups`:

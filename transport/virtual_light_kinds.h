@@ -9,8 +9,8 @@
 //   removed    share of a point light's 1/d^2 that the kind leaves out at a distance, and that
 //              compensation adds back: 1 - d^2 / boundedDistance2
 //   fromCentre whether the light is the product of BSDF, cosines and falloff towards the VPL. Else
-//              transport/spherical_light.h integrates it, falloff is a typical value, and no
-//              bounds hold
+//              it comes from a sphere of radius `size`, transport/spherical_light.h integrates it,
+//              and its falloff is a typical value; leastDistance2() bounds it
 //   emitted    emission in a direction relative to that along the axis, times the distance
 //   mostEmitted, leastEmitted, expectedEmitted
 //              the same for a cluster whose axes fill a cone, without the distance: an upper bound
@@ -101,6 +101,11 @@ struct YukselLight : LambertEmission {
 
 // A sphere of radius `size` (Hasan et al. 2009), which moves near light instead of removing it. Its
 // falloff is that towards a surface that faces it.
+//
+// Bounds: the light is a mean over directions of the sphere, so that it is at most the largest BSDF
+// times cosines towards any point of the sphere, times its solid angle over the disk pi size^2,
+//   2 / (d^2 + d sqrt(d^2 - size^2)),  for d < size that of the hemisphere, 2 / size^2.
+// d is the distance of the centre, at least that of the sphere's box plus `size`.
 struct SphericalLight : LambertEmission {
   static constexpr std::string_view name = "spherical";
   static constexpr bool fromCentre = false;
@@ -110,8 +115,25 @@ struct SphericalLight : LambertEmission {
     const F cos2 = one - size2 / outside2, cosine = squareRoot(cos2);
     return larger(everyLane<F>(1.5f) * outside2 * (one + cosine) / (one + cosine + cos2), d2);
   }
+  // Replaces d^2 in bounds. `box2`: squared distance to a box that holds the sphere.
+  template <typename F>
+  static F leastDistance2(F box2, F size2) {
+    const F d = squareRoot(box2) + squareRoot(size2), d2 = d * d;
+    return everyLane<F>(0.5f) * (d2 + d * squareRoot(larger(d2 - size2, everyLane<F>(0.0f))));
+  }
   static float removed(float) { return 0.0f; }
 };
+
+// What replaces d^2 in an upper bound of the light of VPLs at least `size` large, whose box
+// (VplLights::box) is at the given distance.
+template <typename Kind, typename F>
+F leastDistance2(F box2, F size2) {
+  if constexpr (Kind::fromCentre) {
+    return Kind::boundedDistance2(box2, size2);
+  } else {
+    return Kind::leastDistance2(box2, size2);
+  }
+}
 
 template <typename... Kinds>
 struct KindList {
@@ -165,6 +187,12 @@ inline bool isFromCentre(LightKind kind) {
 // The kind's falloff, which replaces 1/d^2, in 1/m2.
 inline float falloff(LightKind kind, float distanceSquared, float size2) {
   return 1.0f / withKind(kind, [&](auto k) { return k.boundedDistance2(distanceSquared, size2); });
+}
+// Its upper bound for VPLs whose box is at that distance, 1/m2.
+inline float maxFalloff(LightKind kind, float boxDistanceSquared, float size2) {
+  return 1.0f / withKind(kind, [&](auto k) {
+           return leastDistance2<decltype(k)>(boxDistanceSquared, size2);
+         });
 }
 
 }  // namespace bnvpl

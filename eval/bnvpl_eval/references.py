@@ -7,6 +7,7 @@ refused.
 """
 
 import json
+import math
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +19,8 @@ from .guard import guarded, output_guard
 from .runner import Run, Runner, digest, scene_key
 from .settings import EVAL, ROOT, View
 
-CHUNK = 2048  # samples a pixel of one render
+CHUNK = 2048  # samples a pixel of one render, at most
+SMALL_WIDTH = 80  # pixels of the film for which settings.toml has the samples
 FOLDER = EVAL / "references"
 RECORD = output_guard.json_object(
     "the record of a reference", "key", "scene", "film", "spp", "half"
@@ -27,6 +29,11 @@ RECORD = output_guard.json_object(
 
 def path(view: View, film: str, half: str) -> Path:
     return FOLDER / f"{view.name}-{film}-{half}.exr"
+
+
+def spp_of(view: View, width: int) -> int:
+    """Samples a pixel of a half: fewer on a larger film, whose pixels are more."""
+    return math.ceil(view.reference_spp * SMALL_WIDTH / max(width, SMALL_WIDTH))
 
 
 def render_half(runner: Runner, view: View, film: str, spp: int, half: str) -> None:
@@ -40,7 +47,7 @@ def render_half(runner: Runner, view: View, film: str, spp: int, half: str) -> N
     done = stored["spp"] if stored else 0
     if done >= spp:
         return
-    chunk = min(spp - done, CHUNK)
+    chunk = math.ceil((spp - done) / math.ceil((spp - done) / CHUNK))
     # The seeds differ from those of the images that are judged.
     first_seed = stored["seeds"][1] + 2 if stored else 1000 + (half == "b")
     seeds = range(first_seed, first_seed + 2 * -(-(spp - done) // chunk), 2)

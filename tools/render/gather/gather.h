@@ -92,8 +92,6 @@ struct GatherMethod {
   FilmFilter (*filmFilter)(const Values&) = nullptr;
   bool lightGroups = true;  // fills TileReceivers::groupSums
   bool pixelSum = false;    // treats all samples of a pixel as one, with their weights
-  // Evaluates single VPLs alone and takes no bounds of them, so that it works with every kind.
-  bool everyLight = false;
 };
 // Defined in the build folder by cmake/Methods.cmake, from the folders beside this file.
 std::span<const GatherMethod* const> gatherMethods();

@@ -18,15 +18,6 @@ LightKind lightKindOf(const Values& options) {
 void requireTakenLight(const Values& options) {
   if (isFromCentre(lightKindOf(options))) return;
   const std::string& name = options[kLightKey];
-  const GatherMethod* gather = gatherOf(options);
-  if (gather && !gather->everyLight) {
-    std::string others;
-    for (const GatherMethod* m : gatherMethods())
-      if (m->everyLight) others += (others.empty() ? "" : ", ") + std::string(m->name);
-    throw UsageError("--light " + name + ": the bounds of --gather " + std::string(gather->name) +
-                     " hold for VPLs seen from their centre only; choose another gather (" +
-                     others + ") or another light");
-  }
   const CompensateMethod* compensate = compensationOf(options);
   if (compensate && compensate->oneSize)
     throw UsageError("--light " + name + " removes no light that --compensate " +

@@ -1,4 +1,4 @@
-// The kind of virtual light of a run, and whether its gather and compensation take it.
+// The kind of virtual light of a run, and whether its compensation takes it.
 #pragma once
 
 #include "tools/common/options/option.h"
@@ -8,7 +8,7 @@ namespace bnvpl {
 
 // The default kind for methods without the option.
 LightKind lightKindOf(const Values& options);
-// Throws UsageError if the gather or the compensation cannot take the kind of light.
+// Throws UsageError if the compensation cannot take the kind of light.
 void requireTakenLight(const Values& options);
 
 }  // namespace bnvpl

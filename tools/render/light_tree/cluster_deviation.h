@@ -65,7 +65,7 @@ class DeviationModel {
     const float y = larger(larger(lower_.y - point.y, point.y - upper_.y), 0.0f);
     const float z = larger(larger(lower_.z - point.z, point.z - upper_.z), 0.0f);
     return {clamp01(deviation) * sent / Kind::boundedDistance2(distance2, clamp2_),
-            sent / Kind::boundedDistance2(x * x + y * y + z * z, clamp2_)};
+            sent / leastDistance2<Kind>(x * x + y * y + z * z, clamp2_)};
   }
 
  private:

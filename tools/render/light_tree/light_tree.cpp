@@ -67,7 +67,7 @@ class Builder {
 
   LightNode leafOf(uint32_t i) const {
     LightNode n;
-    n.bounds.extend(vpls_.position[i]);
+    n.bounds = vpls_.box(i);
     n.axis = vpls_.normal[i];
     n.frame = AxisFrame(n.axis);
     n.intensity = vpls_.intensity[i];
@@ -141,15 +141,19 @@ std::vector<uint32_t> LightTree::coarseCut(size_t count) const {
   return cut;
 }
 
-VplDraw LightTree::draw(const LightNode& n, float u) const {
-  if (n.leaf()) return {n.representative, 1.0f};
+uint32_t LightTree::drawPlace(const LightNode& n, float u) const {
+  if (n.leaf()) return n.begin;
   const double whole = upTo[n.end] - upTo[n.begin];
   const auto first = upTo.begin() + n.begin + 1, last = upTo.begin() + n.end;
   const auto at = std::upper_bound(first, last, upTo[n.begin] + double{u} * whole);
-  const auto k = std::min(n.end - 1, static_cast<uint32_t>(at - upTo.begin()) - 1);
+  return std::min(n.end - 1, static_cast<uint32_t>(at - upTo.begin()) - 1);
+}
+
+VplDraw LightTree::at(const LightNode& n, uint32_t place) const {
+  if (n.leaf()) return {n.representative, 1.0f};
   // Rounding of the running sum may leave a VPL no share; its weight is then 0.
-  const double own = upTo[k + 1] - upTo[k];
-  return {order[k], own > 0.0 ? static_cast<float>(whole / own) : 0.0f};
+  const double whole = upTo[n.end] - upTo[n.begin], own = upTo[place + 1] - upTo[place];
+  return {order[place], own > 0.0 ? static_cast<float>(whole / own) : 0.0f};
 }
 
 LightTree buildLightTree(const VplLights& vpls, uint64_t seed, LightSplit by) {

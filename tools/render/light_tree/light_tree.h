@@ -29,7 +29,7 @@ struct AxisFrame {
 };
 
 struct LightNode {
-  Bounds bounds;
+  Bounds bounds;                                   // union of the boxes of its VPLs
   Vec3 axis;                                       // axis of the cone of normals
   AxisFrame frame;                                 // basis about the axis
   float cosHalfAngle = 1.0f, sinHalfAngle = 0.0f;  // sine of at most a right angle
@@ -42,7 +42,7 @@ struct LightNode {
   bool leaf() const { return left == 0; }
   // Upper bound of its VPLs' falloff, 1/m2.
   float falloff(float distanceSquared) const {
-    return bnvpl::falloff(kind, distanceSquared, clamp2);
+    return bnvpl::maxFalloff(kind, distanceSquared, clamp2);
   }
 };
 
@@ -66,7 +66,10 @@ struct LightTree {
   // VPLs.
   std::vector<uint32_t> coarseCut(size_t count) const;
   // Draws a VPL of the cluster in proportion to intensity; u in [0, 1).
-  VplDraw draw(const LightNode& n, float u) const;
+  VplDraw draw(const LightNode& n, float u) const { return at(n, drawPlace(n, u)); }
+  // The same as a place in `order`, and the VPL there as a draw from a cluster that holds it.
+  uint32_t drawPlace(const LightNode& n, float u) const;
+  VplDraw at(const LightNode& n, uint32_t place) const;
 };
 
 // How a cluster is split: at the middle of its longest side of position and scaled normal, or where

@@ -42,7 +42,6 @@ extern const GatherMethod method;
 const GatherMethod method{.name = "all",
                           .summary = "all VPLs: the reference for a set of VPLs",
                           .options = {},
-                          .make = make,
-                          .everyLight = true};
+                          .make = make};
 
 }  // namespace bnvpl::methods::gather::all

@@ -51,6 +51,7 @@ class Hierarchy {
       VplTransfer c;
       if (!unoccludedTransfer(level.lights, i, bsdf, c)) return;
       ++out.shadowRays;
+      out.sampledPairs += c.sampled;
       const uint64_t pick = random64(key, i, uint32_t(l)) % kMembers;
       const uint32_t tested = l > 0 ? level.members[i * kMembers + pick] : i;
       if (accel_.occluded(from, vpls_.position[tested])) return;

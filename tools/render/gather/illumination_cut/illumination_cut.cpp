@@ -32,6 +32,7 @@ Gathered gatherPairs(const GatherInputs& in, const PairPlan& plan, const Bsdf& b
     const LightNode& light = in.tree.nodes[pair.light];
     VplTransfer found;
     if (!unoccludedTransfer(in.vpls, light.representative, bsdf, found)) return;
+    out.sampledPairs += found.sampled;
     if (!pair.seen) {
       ++out.shadowRays;
       if (in.accel.occluded(from, in.vpls.position[light.representative])) return;

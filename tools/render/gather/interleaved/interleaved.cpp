@@ -112,7 +112,6 @@ const GatherMethod method{
     .make = make,
     .counters = kCounters,
     .filmFilter = filmFilter,
-    .lightGroups = false,
-    .everyLight = true};
+    .lightGroups = false};
 
 }  // namespace bnvpl::methods::gather::interleaved

@@ -76,7 +76,6 @@ const GatherMethod method{
     .summary = "all VPLs; cells of space know which are visible or hidden, without rays",
     .options = kOptions,
     .make = make,
-    .counters = kCounters,
-    .everyLight = true};
+    .counters = kCounters};
 
 }  // namespace bnvpl::methods::gather::lie

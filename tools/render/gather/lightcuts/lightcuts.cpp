@@ -48,6 +48,7 @@ Gathered gatherCut(const Accelerator& accel, const VplLights& vpls, const LightT
     VplTransfer found;
     if (unoccludedTransfer(vpls, r, bsdf, found)) {
       ++out.shadowRays;
+      out.sampledPairs += found.sampled;
       if (!accel.occluded(from, vpls.position[r])) {
         c.transfer = found.transfer;
         c.clampLoss = found.clampLoss;

@@ -31,7 +31,6 @@ const GatherMethod method{
     .name = "lightslice",
     .summary = "VPLs clustered for each slice of the visible points, by rows of their matrix",
     .options = kOptions,
-    .make = make,
-    .everyLight = true};
+    .make = make};
 
 }  // namespace bnvpl::methods::gather::lightslice

@@ -95,9 +95,12 @@ class SliceMatrix {
     rows_.clear();
     visible_.clear();
     for (uint32_t r = 0; r < receivers_.size(); ++r) {
-      ++out_[receivers_[r]].cut;
-      if (unoccludedTransfer(in_.vpls, draw.index, *tile_.bsdf[receivers_[r]], transfer_[r]))
-        rows_.push_back(r);
+      Gathered& out = out_[receivers_[r]];
+      ++out.cut;
+      if (!unoccludedTransfer(in_.vpls, draw.index, *tile_.bsdf[receivers_[r]], transfer_[r]))
+        continue;
+      out.sampledPairs += transfer_[r].sampled;
+      rows_.push_back(r);
     }
   }
   // Samples further entries, in random rows, which it moves to the front.

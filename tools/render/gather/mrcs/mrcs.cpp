@@ -136,7 +136,6 @@ const GatherMethod method{
     .name = "mrcs",
     .summary = "VPLs clustered once for the film, by sampled rows of their matrix",
     .options = kOptions,
-    .make = make,
-    .everyLight = true};
+    .make = make};
 
 }  // namespace bnvpl::methods::gather::mrcs

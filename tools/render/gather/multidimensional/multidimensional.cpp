@@ -17,7 +17,10 @@ namespace {
 constexpr auto kErrorOption = inTopic(
     Topic::Quality, realOption("error", "0.02", 0, 1, "share of the pixel",
                                "bound on the error of a pair of clusters that is not refined"));
-constexpr auto kOptions = optionTable(kErrorOption, kMaxCutOption);
+// Walter et al. take 1,000.
+constexpr auto kMaxPairsOption =
+    countOption("max-cut", "4000", 0x1p31, "pairs", "largest number of pairs of a pixel");
+constexpr auto kOptions = optionTable(kErrorOption, kMaxPairsOption);
 constexpr std::array kCounters{
     Counter{"samplesplits", "splits of samples",
             "refinements of the product graph that opened samples instead of VPLs"}};
@@ -26,8 +29,8 @@ constexpr std::array kCounters{
 struct Pair {
   float bound;  // on the error in the pixel's sum, channels added
   uint32_t receivers, lights;
-  uint32_t place;  // the receivers' representative, in the tree's order
-  Vec3 transfer;   // between the two representatives, times their visibility
+  uint32_t receiver, light;  // the representatives: places in the orders of their trees
+  Vec3 transfer;             // between the two representatives, times their visibility
   float clampLoss;
 };
 bool lessBound(const Pair& a, const Pair& b) {
@@ -68,7 +71,8 @@ class PixelCut {
   }
 
   Gathered refined(double error, size_t maxPairs) {
-    for (const uint32_t lights : in_.tree.startCut) insert(evaluated(0, lights, drawFrom(0)));
+    for (const uint32_t lights : in_.tree.startCut)
+      insert(evaluated(0, lights, drawFrom(0), drawLight(lights)));
     while (heap_.size() < maxPairs) {
       const Pair worst = heap_.front();
       if (worst.bound <= 0.0f || double{worst.bound} <= error * std::abs(total_.sum())) break;
@@ -88,6 +92,9 @@ class PixelCut {
     const ReceiverNode& n = tree_.nodes[receivers];
     return static_cast<float>(upTo_[n.end] - upTo_[n.begin]);
   }
+  uint32_t drawLight(uint32_t lights) {
+    return in_.tree.drawPlace(in_.tree.nodes[lights], rng_.next());
+  }
   // Place in the tree's order of a sample of the node, drawn in proportion to strength.
   uint32_t drawFrom(uint32_t receivers) {
     const ReceiverNode& n = tree_.nodes[receivers];
@@ -104,13 +111,14 @@ class PixelCut {
     return strengthOf(receivers) * pairBound(light, node, only);
   }
 
-  Pair evaluated(uint32_t receivers, uint32_t lights, uint32_t place) {
-    Pair pair{boundOf(receivers, lights), receivers, lights, place, {}, 0.0f};
-    const uint32_t vpl = in_.tree.nodes[lights].representative;
-    const Bsdf& bsdf = *samples_.bsdf[tree_.order[place]];
+  Pair evaluated(uint32_t receivers, uint32_t lights, uint32_t receiver, uint32_t light) {
+    Pair pair{boundOf(receivers, lights), receivers, lights, receiver, light, {}, 0.0f};
+    const uint32_t vpl = in_.tree.order[light];
+    const Bsdf& bsdf = *samples_.bsdf[tree_.order[receiver]];
     VplTransfer found;
     if (!unoccludedTransfer(in_.vpls, vpl, bsdf, found)) return pair;
     ++out_.shadowRays;
+    out_.sampledPairs += found.sampled;
     const Vec3 from = in_.accel.offsetOrigin(bsdf.point().position, bsdf.point().ng);
     if (in_.accel.occluded(from, in_.vpls.position[vpl])) return pair;
     pair.transfer = found.transfer;
@@ -118,8 +126,12 @@ class PixelCut {
     return pair;
   }
 
+  template <typename Node>
+  static bool holds(const Node& n, uint32_t place) {
+    return n.begin <= place && place < n.end;
+  }
   // The pairs of one of the two nodes with the children of the other. The child that holds both
-  // representatives keeps what was found for them; the other one draws a sample.
+  // representatives keeps what was found for them; the other one draws both.
   std::array<Pair, 2> childrenOf(const Pair& pair) {
     const ReceiverNode& node = tree_.nodes[pair.receivers];
     const LightNode& light = in_.tree.nodes[pair.lights];
@@ -131,16 +143,14 @@ class PixelCut {
           openReceivers ? (k == 0 ? node.left : node.right) : (k == 0 ? light.left : light.right);
       const uint32_t receivers = openReceivers ? child : pair.receivers,
                      lights = openReceivers ? pair.lights : child;
-      const ReceiverNode& n = tree_.nodes[receivers];
-      const bool known = n.begin <= pair.place && pair.place < n.end &&
-                         in_.tree.nodes[lights].representative == light.representative;
-      if (known) {
+      if (holds(tree_.nodes[receivers], pair.receiver) &&
+          holds(in_.tree.nodes[lights], pair.light)) {
         out[k] = pair;
         out[k].bound = boundOf(receivers, lights);
         out[k].receivers = receivers;
         out[k].lights = lights;
       } else {
-        out[k] = evaluated(receivers, lights, drawFrom(receivers));
+        out[k] = evaluated(receivers, lights, drawFrom(receivers), drawLight(lights));
       }
     }
     return out;
@@ -157,8 +167,10 @@ class PixelCut {
   }
 
   void account(const Pair& pair, double sign) {
-    const uint32_t i = tree_.order[pair.place];
-    const Vec3 light = pair.transfer * in_.tree.nodes[pair.lights].intensity * samples_.weight[i] *
+    const uint32_t i = tree_.order[pair.receiver];
+    const VplDraw vpl = in_.tree.at(in_.tree.nodes[pair.lights], pair.light);
+    const Vec3 intensity = in_.vpls.intensity[vpl.index] * vpl.weight;
+    const Vec3 light = pair.transfer * intensity * samples_.weight[i] *
                        (strengthOf(pair.receivers) / samples_.strength(i));
     total_.add(light, sign);
     clamped_.add(light * pair.clampLoss, sign);
@@ -181,8 +193,8 @@ class PixelCut {
 
 Gather make(const GatherInputs& in, const Values& options) {
   return {[in, error = double{options.real32(kErrorOption)},
-           maxPairs = static_cast<size_t>(options[kMaxCutOption])](const TileReceivers& tile,
-                                                                   std::span<Gathered> out) {
+           maxPairs = static_cast<size_t>(options[kMaxPairsOption])](const TileReceivers& tile,
+                                                                     std::span<Gathered> out) {
     for (size_t pixel = 0; pixel < tile.pixels; ++pixel) {
       const PixelSamples samples(tile, pixel);
       if (samples.bsdf.empty() || in.tree.nodes.empty()) continue;

@@ -80,7 +80,7 @@ class Builder {
       weights += weight;
       n.cone = n.bounds.empty() ? NormalCone{vpls_.normal[i]}
                                 : merged(n.cone, NormalCone{vpls_.normal[i]});
-      n.bounds.extend(vpls_.position[i]);
+      n.bounds.extend(vpls_.box(i));
       n.minClamp2 = std::min(n.minClamp2, vpls_.clamp2[i]);
       n.maxClamp2 = std::max(n.maxClamp2, vpls_.clamp2[i]);
       // Replaces the VPL so far with the probability of the new one's share.

@@ -70,7 +70,7 @@ float spread(const OctreeNode& n, LightKind kind, Vec3 intensity, const Bsdf& bs
   const Vec3 high =
       bsdf.roughUpperBound(receiver.high, [&](Vec3 axis) { return sphere.cosines(axis).high; });
   const Vec3 low = bsdf.diffuseValue() * std::max(receiver.low, 0.0f);
-  const float nearest = falloff(kind, n.bounds.distanceSquared(at), n.minClamp2);
+  const float nearest = maxFalloff(kind, n.bounds.distanceSquared(at), n.minClamp2);
   const float farthest =
       falloff(kind, lengthSquared(max(at - n.bounds.lower, n.bounds.upper - at)), n.maxClamp2);
   return std::max(0.0f, dot(intensity, high * (most * nearest) - low * (least * farthest)));
@@ -136,6 +136,7 @@ class Octree {
     Open o{spread(n, lights.kind, lights.intensity[node], bsdf), node, {}};
     VplTransfer c;
     if (o.spread < 0.0f || !unoccludedTransfer(lights, node, bsdf, c)) return o;
+    out.sampledPairs += c.sampled;
     if (shadows_) {
       ++out.shadowRays;
       if (accel_.occluded(from, vpls_.position[n.shadow])) return o;

@@ -23,25 +23,25 @@ const BrightLights::Cell& BrightLights::at(Vec3 position) const {
 
 BrightLights::Cell BrightLights::find(const Bounds& box) const {
   const Vec3 centre = box.center();
-  const float radius2 = 0.25f * lengthSquared(box.extent());
+  const float radius = 0.5f * length(box.extent());
   std::vector<float> most(vpls_.size());  // irradiance that no point of the cell exceeds, W/m2
   double arriving = 0.0;                  // at the centre of the cell, from all VPLs
   for (size_t i = 0; i < vpls_.size(); ++i) {
-    const Vec3 to = vpls_.position[i] - centre;
+    const Vec3 to = vpls_.position[i] - centre, half = 0.5f * vpls_.box(i).extent();
     const float d2 = lengthSquared(to), intensity = mean(vpls_.intensity[i]);
+    const float reach = radius + length(half);
     float cosine = 1.0f;
-    if (d2 > radius2) {
-      const float sinSphere = std::sqrt(radius2 / d2);
+    if (d2 > reach * reach) {
+      const float sinSphere = reach / std::sqrt(d2);
       cosine =
           cosineOfLess(-dot(vpls_.normal[i], to) / std::sqrt(d2), sineOf(sinSphere), sinSphere);
     }
     const float emitted =
         intensity * withKind(vpls_.kind, [&](auto k) { return k.mostEmitted(cosine, 1.0f, 0.0f); });
-    const auto arrives = [&](float distance2) {
-      return emitted * falloff(vpls_.kind, distance2, vpls_.clamp2[i]);
-    };
-    most[i] = arrives(box.distanceSquared(vpls_.position[i]));
-    arriving += double{arrives(larger(d2, radius2))};
+    const Bounds grown{box.lower - half, box.upper + half};
+    most[i] =
+        emitted * maxFalloff(vpls_.kind, grown.distanceSquared(vpls_.position[i]), vpls_.clamp2[i]);
+    arriving += double{emitted * falloff(vpls_.kind, larger(d2, radius * radius), vpls_.clamp2[i])};
   }
   Cell cell;
   cell.upTo.assign(1, 0.0);

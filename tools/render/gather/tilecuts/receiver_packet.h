@@ -27,11 +27,12 @@ struct ReceiverPacket {
   alignas(64) Lanes red{}, green{}, blue{};  // irradiance, W/m2
   alignas(64) Lanes clampedRed{}, clampedGreen{}, clampedBlue{};
   std::array<Vec3, kSize> offset{};                   // offset ray origins
-  std::array<Vec3, kSize> glossy{}, glossyClamped{};  // radiance of glossy lobes
+  // Radiance of glossy lobes, and of light that is integrated with the BSDF.
+  std::array<Vec3, kSize> glossy{}, glossyClamped{};
   std::array<const Bsdf*, kSize> bsdf{};
   std::array<uint32_t, kSize> receiver{};    // index among the tile's receivers
   std::array<uint32_t, kSize> pixelOrder{};  // neighbours in the image have neighbouring places
-  std::array<uint32_t, kSize> shadowRays{};
+  std::array<uint32_t, kSize> shadowRays{}, sampledPairs{};
   uint32_t count = 0;
   uint32_t lobes = 0;  // mask of the lanes with glossy lobes
   uint32_t clusters = 0;
@@ -69,6 +70,7 @@ struct ReceiverPacket {
       g.clamped = value * Vec3(clampedRed[l], clampedGreen[l], clampedBlue[l]) + glossyClamped[l];
       g.cut = clusters;
       g.shadowRays = shadowRays[l];
+      g.sampledPairs = sampledPairs[l];
       for (uint32_t k = 0; k < groups.size(); ++k) {
         const GroupLanes& of = groups[k];
         tile.groupsOf(receiver[l])

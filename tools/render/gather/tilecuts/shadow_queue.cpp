@@ -59,9 +59,10 @@ void ShadowQueue::add(ReceiverPacket& p, const VplDraw& vpl, uint32_t cluster, f
   d.packet = &p;
   d.at = vpls_.position[vpl.index];
   const uint32_t lanes = withKind(vpls_.kind, [&](auto kind) {
+    if constexpr (!kind.fromCentre) return integrate(p, vpl.index, d.transfer);
     return geometryOfPacket<decltype(kind)>(vpls_, vpl.index, p, d.transfer, d.clampLoss);
   });
-  if (lanes == 0) return waiting_.pop_back();
+  if (lanes == 0) return removeLast();
   d.light = vpls_.intensity[vpl.index] * vpl.weight;
   d.vpl = vpl.index, d.weight = vpl.weight;
   float largest = 0.0f;
@@ -73,7 +74,7 @@ void ShadowQueue::add(ReceiverPacket& p, const VplDraw& vpl, uint32_t cluster, f
   if (survivalProbability < 1.0f) {
     const float roulette = toUnitFloat(random64(p.rouletteKey, cluster, p.rouletteDraw));
     if (roulette >= survivalProbability || survivalProbability < kMinProbability)
-      return waiting_.pop_back();
+      return removeLast();
     d.light *= 1.0f / survivalProbability;
     d.weight *= 1.0f / survivalProbability;
   }
@@ -81,6 +82,7 @@ void ShadowQueue::add(ReceiverPacket& p, const VplDraw& vpl, uint32_t cluster, f
   for (uint32_t rest = lanes; rest != 0; rest &= rest - 1) {
     const auto l = static_cast<uint32_t>(std::countr_zero(rest));
     ++p.shadowRays[l];
+    if (!integrated_.empty()) p.sampledPairs[l] += integrated_.back().sampled >> l & 1u;
     ++rayCount_[p.pixelOrder[l]];
   }
   raysWaiting_ += static_cast<size_t>(std::popcount(lanes));
@@ -89,11 +91,37 @@ void ShadowQueue::add(ReceiverPacket& p, const VplDraw& vpl, uint32_t cluster, f
 
 void ShadowQueue::flush() {
   traceAll();
-  for (const PendingContribution& d : waiting_) {
+  for (size_t i = 0; i < waiting_.size(); ++i) {
+    const PendingContribution& d = waiting_[i];
+    if (!integrated_.empty()) {
+      accumulateIntegrated(d, integrated_[i]);
+      continue;
+    }
     accumulate(d);
     if (!d.packet->groups.empty()) accumulateGroups(d);
   }
   waiting_.clear();
+  integrated_.clear();
+}
+
+void ShadowQueue::removeLast() {
+  waiting_.pop_back();
+  if (!integrated_.empty()) integrated_.pop_back();
+}
+
+// Roulette multiplies `transfer` by the packet's brightest BSDF, which is part of the light here.
+uint32_t ShadowQueue::integrate(const ReceiverPacket& p, uint32_t vpl, Lanes& transfer) {
+  Integrated& light = integrated_.emplace_back();
+  uint32_t lanes = 0;
+  for (uint32_t l = 0; l < p.count; ++l) {
+    VplTransfer found;
+    if (!unoccludedTransfer(vpls_, vpl, *p.bsdf[l], found)) continue;
+    lanes |= 1u << l;
+    light.transfer[l] = found.transfer;
+    light.sampled |= uint32_t{found.sampled} << l;
+    transfer[l] = maxComponent(found.transfer) / p.brightest;
+  }
+  return lanes;
 }
 
 // Sorts rays by place, and those of the same place by the order of the VPLs.
@@ -139,6 +167,19 @@ void ShadowQueue::accumulateGroups(const PendingContribution& d) const {
     for (uint32_t rest = d.lanes & p.lobes; rest != 0; rest &= rest - 1) {
       const auto l = static_cast<uint32_t>(std::countr_zero(rest));
       to.glossy[l] += glossyOf(p, l, d.at) * light * d.transfer[l];
+    }
+  }
+}
+
+void ShadowQueue::accumulateIntegrated(const PendingContribution& d,
+                                       const Integrated& light) const {
+  ReceiverPacket& p = *d.packet;
+  for (uint32_t rest = d.lanes; rest != 0; rest &= rest - 1) {
+    const auto l = static_cast<uint32_t>(std::countr_zero(rest));
+    p.glossy[l] += light.transfer[l] * d.light;
+    for (uint32_t k = 0; k < p.groups.size(); ++k) {
+      const Vec3 own = vpls_.groupIntensity[size_t{d.vpl} * vpls_.groups + k] * d.weight;
+      p.groups[k].glossy[l] += light.transfer[l] * own;
     }
   }
 }

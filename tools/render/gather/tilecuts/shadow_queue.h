@@ -36,17 +36,28 @@ class ShadowQueue {
     alignas(64) Lanes transfer;
     alignas(64) Lanes clampLoss;  // light that the bound on 1/d^2 removed, over the rest
   };
+  // Light of a VPL that is no product of BSDF and irradiance (VplLights::kind), by lane: BSDF and
+  // cosines over its sphere, 1/m2.
+  struct Integrated {
+    std::array<Vec3, ReceiverPacket::kSize> transfer{};
+    uint32_t sampled = 0;  // mask of the lanes whose transfer is a mean of samples
+  };
   struct Ray {
     uint32_t pending, lane;
   };
 
+  // Mask of the lanes that the VPL may light, and their transfer.
+  uint32_t integrate(const ReceiverPacket& p, uint32_t vpl, Lanes& transfer);
+  void removeLast();
   void traceAll();
   static void accumulate(const PendingContribution& d);
   void accumulateGroups(const PendingContribution& d) const;
+  void accumulateIntegrated(const PendingContribution& d, const Integrated& light) const;
 
   const Accelerator& accel_;
   const VplLights& vpls_;
   std::vector<PendingContribution> waiting_;
+  std::vector<Integrated> integrated_;  // one for each that waits, or empty
   std::vector<uint32_t> rayCount_;  // rays per place; while tracing, where those of a place begin
   size_t raysWaiting_ = 0;
   std::vector<Ray> order_;

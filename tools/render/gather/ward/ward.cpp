@@ -130,7 +130,6 @@ const GatherMethod method{
     .name = "ward",
     .summary = "VPLs sorted by contribution, shadow-tested until the rest is negligible",
     .options = kOptions,
-    .make = make,
-    .everyLight = true};
+    .make = make};
 
 }  // namespace bnvpl::methods::gather::ward

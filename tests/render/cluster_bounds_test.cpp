@@ -1,0 +1,92 @@
+// Upper bounds of the light of clusters: no VPL that represents one may exceed them.
+#include "tools/render/light_tree/cluster_bounds.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/render/random_lights.h"
+#include "tools/common/files/streams.h"
+#include "tools/render/gather/receiver_tree.h"
+#include "transport/spherical_light.h"
+
+namespace bnvpl::test {
+namespace {
+
+// BSDF, cosines and falloff of a VPL. Means over directions of spheres take many samples.
+Vec3 transferOf(const VplLights& vpls, size_t i, const Bsdf& bsdf) {
+  VplTransfer found;
+  if (!unoccludedTransfer(vpls, i, bsdf, found)) return {};
+  if (!found.sampled) return found.transfer;
+  const Vec3 d = vpls.position[i] - bsdf.point().position;
+  return sampledSphericalTransfer({d, vpls.normal[i], vpls.clamp2[i]}, bsdf, 512, 7 + i);
+}
+
+float sumOf(Vec3 v) { return v.x + v.y + v.z; }
+
+class ClusterBounds : public testing::TestWithParam<std::tuple<std::string_view, bool>> {
+ protected:
+  ClusterBounds() : scene(withMaterial(std::get<1>(GetParam()))) {
+    Rng rng(streamKey(9, Stream::Plot), 0);
+    vpls = lightsAbout(24, rng);
+    vpls.kind = lightKindNamed(std::get<0>(GetParam()));
+    tree = buildLightTree(vpls, 1);
+    for (int k = 0; k < 150; ++k) points.push_back(pointIn(rng));
+    for (const SurfacePoint& p : points) {
+      bsdfs.emplace_back(scene, p);
+      for (size_t i = 0; i < vpls.size(); ++i)
+        transfers.push_back(transferOf(vpls, i, bsdfs.back()));
+    }
+  }
+  // The most light that the cluster sends to a point if one of its VPLs represents it.
+  float mostAt(const LightNode& n, size_t point) const {
+    float most = 0.0f;
+    for (uint32_t k = n.begin; k < n.end; ++k)
+      most = std::max(most, sumOf(transfers[point * vpls.size() + tree.order[k]] * n.intensity));
+    return most;
+  }
+  Scene scene;
+  VplLights vpls;
+  LightTree tree;
+  std::vector<SurfacePoint> points;
+  std::vector<Bsdf> bsdfs;
+  std::vector<Vec3> transfers;
+};
+
+constexpr float kSampled = 1.02f;  // means of samples have noise
+
+TEST_P(ClusterBounds, HoldAtEveryPoint) {
+  int near = 0, bounded = 0;  // pairs of VPLs
+  for (size_t k = 0; k < points.size(); ++k) {
+    const ClusterReceiver receiver(bsdfs[k]);
+    for (const LightNode& n : tree.nodes) {
+      if (n.leaf()) continue;
+      const float bound = errorBound(n, receiver), light = mostAt(n, k);
+      EXPECT_LE(light, kSampled * bound + 1e-6f) << k;
+      if (!(light > 0.0f) || n.end - n.begin > 2) continue;
+      ++bounded;
+      near += 10.0f * light > bound;
+    }
+  }
+  EXPECT_GT(bounded, 300);
+  EXPECT_GT(5 * near, bounded);  // infinite bounds would hold, too
+}
+
+TEST_P(ClusterBounds, HoldForEveryPairOfClusters) {
+  std::vector<ReceiverBsdf> ofPoints;
+  for (const Bsdf& b : bsdfs) ofPoints.emplace_back(b);
+  const ReceiverTree receivers = buildReceiverTree(points, ofPoints, 0.1f);
+  for (const ReceiverNode& r : receivers.nodes) {
+    for (const LightNode& n : tree.nodes) {
+      float light = 0.0f;
+      for (uint32_t k = r.begin; k < r.end; ++k)
+        light = std::max(light, mostAt(n, receivers.order[k]));
+      const Bsdf* only = r.leaf() ? &bsdfs[receivers.order[r.begin]] : nullptr;
+      EXPECT_LE(light, kSampled * pairBound(n, r, only) + 1e-6f);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ClusterBounds,
+                         testing::Combine(testing::ValuesIn(LightKinds::names), testing::Bool()));
+
+}  // namespace
+}  // namespace bnvpl::test
