@@ -223,6 +223,7 @@ def main() -> int:
     parser.add_argument("--picture-spp", type=int, default=32)
     parser.add_argument("--photons", default="4M")
     parser.add_argument("--no-table", action="store_true", help="leave the pages as they are")
+    parser.add_argument("--pictures", action="store_true", help="make no comparisons and no table")
     arguments = parser.parse_args()
     gallery = Gallery(
         Runner(arguments.bin.resolve(), arguments.cache.resolve()), arguments.spp, arguments.photons
@@ -238,9 +239,11 @@ def main() -> int:
             )
             continue
         gallery.picture(scene, arguments.picture_spp)
+        if arguments.pictures:
+            continue
         rows.append(gallery.row(scene))
         print(rows[-1], flush=True)
-    if not arguments.no_table:
+    if not arguments.no_table and not arguments.pictures:
         write_table(rows)
     return 0
 

@@ -3,6 +3,7 @@
 import sys
 import unittest
 from pathlib import Path
+from unittest import mock
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from bnvpl_eval.parts import field  # noqa: E402 (after the path that it needs)
@@ -25,6 +26,19 @@ class FittingSamples(unittest.TestCase):
 
     def test_no_more_than_the_limit(self) -> None:
         self.assertEqual(self.fitting(0.0, 1e-6, 4.0), field.MAX_SPP)
+
+
+class TooSlow(unittest.TestCase):
+    def test_no_trial_is_run_where_one_sample_would_exceed_the_time(self) -> None:
+        size = {"equal_time_vpls": 10_000, "time_s": 4.0}
+        context = mock.Mock(size=size)
+        context.configuration.return_value.but.return_value = mock.Mock(vpls=10_000, spp=2)
+        run = field.Field(context)
+        rows = [{"vpls": 1000, "render_cpu_s": 0.9}]  # 9 s at 10,000 VPLs, 4.5 s a sample
+        view = mock.Mock()
+        self.assertIsNone(run.at_equal_time(view, "all", "none", rows))
+        self.assertEqual(len(run.skipped), 1)
+        context.runner.run.assert_not_called()
 
 
 if __name__ == "__main__":

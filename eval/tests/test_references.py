@@ -73,6 +73,16 @@ class References(unittest.TestCase):
             (4 * references.CHUNK, [1000, 1006], 6.0),
         )
 
+    def test_larger_films_take_fewer_samples_a_pixel(self) -> None:
+        view = dataclasses.replace(self.view, reference_spp=4096)
+        self.assertEqual(
+            [references.spp_of(view, width) for width in (40, 80, 240)], [4096, 4096, 1366]
+        )
+
+    def test_a_half_has_chunks_of_equal_size(self) -> None:
+        self.render(self.view, 2 * references.CHUNK + 1)
+        self.assertEqual({spp for _, spp, _ in self.runner.asked}, {1366})
+
     def test_another_integrator_begins_anew(self) -> None:
         path = dataclasses.replace(self.view, reference_integrator="path")
         light = dataclasses.replace(self.view, reference_integrator="light")

@@ -29,15 +29,17 @@ def run(context: Context) -> None:
         add_plots(context, view, found, path)
 
 
-def series(label: str, rows: list[dict[str, Any]], x: str) -> dict[str, Any]:
-    """RMSE / mean over the column x. Points whose error estimate is not positive are left out."""
-    rows = [row for row in rows if row["rmse_over_mean"] > 0]
-    xs, ys = [row[x] for row in rows], [row["rmse_over_mean"] for row in rows]
+def series(
+    label: str, rows: list[dict[str, Any]], x: str, y: str = "rmse_over_mean"
+) -> dict[str, Any]:
+    """A column over the column x. Points that are not positive are left out."""
+    rows = [row for row in rows if row[y] > 0]
+    xs, ys = [row[x] for row in rows], [row[y] for row in rows]
     made: dict[str, Any] = {
         "label": label,
         "x": xs,
         "y": ys,
-        "error": [row.get("rmse_error", 0.0) for row in rows],
+        "error": [row.get("rmse_error", 0.0) if y == "rmse_over_mean" else 0.0 for row in rows],
     }
     if len(xs) > 1:
         made["slope"] = slope(xs, ys)

@@ -62,7 +62,7 @@ class Field:
         return self.context.size
 
     def configuration(self, view: View, gather: str, compensate: str, vpls: int) -> Any:
-        c = self.context.configuration(view, "local")
+        c = self.context.configuration(view, self.size.get("method", "local"))
         return c.but(
             vpls=vpls,
             candidates=vpls * self.size["candidates_per_vpl"],
@@ -117,8 +117,15 @@ class Field:
             rows.append(row)
         return rows
 
-    def at_equal_time(self, view: View, gather: str, compensate: str) -> dict[str, Any] | None:
+    def leave_out(self, view: View, gather: str, compensate: str) -> None:
+        self.skipped.append(f"{gather}, {compensate}, equal time, {view.scene.title}")
+
+    def at_equal_time(
+        self, view: View, gather: str, compensate: str, at_equal_vpls: list[dict[str, Any]]
+    ) -> dict[str, Any] | None:
         c = self.configuration(view, gather, compensate, self.size["equal_time_vpls"])
+        if expected_s(at_equal_vpls, c.vpls) > c.spp * self.size["time_s"]:
+            return self.leave_out(view, gather, compensate)
 
         def cpu_s(spp: int) -> float:
             _, runs = pipeline.image(self.context.runner, view, c.but(spp=spp), 1)
@@ -130,8 +137,7 @@ class Field:
         if spp is None:
             return None
         if spp < 1:
-            self.skipped.append(f"{gather}, {compensate}, equal time, {view.scene.title}")
-            return None
+            return self.leave_out(view, gather, compensate)
         row: dict[str, Any] | None = self.judge(
             view, gather, compensate, c.vpls, spp, EQUAL_TIME
         )
@@ -194,15 +200,20 @@ def add_pictures(context: Context, view: View, rows: list[dict[str, Any]]) -> No
 
 
 def add_plots(context: Context, view: View, found: dict[str, list[dict[str, Any]]]) -> None:
-    for x, label in (("vpls", "VPLs"), ("render_cpu_s", "CPU seconds of vpl-render")):
-        lines = {gather: series(gather, rows, x) for gather, rows in found.items()}
+    seconds, error = "CPU seconds of vpl-render", "RMSE / mean of the indirect light"
+    for name, x, x_label, y, y_label in (
+        ("vpls", "vpls", "VPLs", "rmse_over_mean", error),
+        ("render-cpu-s", "render_cpu_s", seconds, "rmse_over_mean", error),
+        ("growth", "vpls", "VPLs", "render_cpu_s", seconds),
+    ):
+        lines = {gather: series(gather, rows, x, y) for gather, rows in found.items()}
         context.plots.append(
             {
-                "id": f"field-{x.replace('_', '-')}-{view.scene.id}",
-                "title": f"{view.scene.title}: error over {label}",
+                "id": f"field-{name}-{view.scene.id}",
+                "title": f"{view.scene.title}: {y_label.split(' of ')[0]} over {x_label}",
                 "caption": f"Without compensation, {context.size['spp']} samples a pixel.",
-                "x_label": label,
-                "y_label": "RMSE / mean of the indirect light",
+                "x_label": x_label,
+                "y_label": y_label,
                 "x_log": True,
                 "y_log": True,
                 "series": [line for line in lines.values() if line["x"]],
@@ -233,11 +244,15 @@ def note(size: dict[str, Any], run: Field) -> str:
     parts = [
         "One set of lit VPLs for each scene, count and seed.",
         f"Equal VPLs: no compensation, spp {size['spp']}.",
-        f"Equal time: {size['time_s']} CPU seconds of vpl-render, {size['equal_time_vpls']} VPLs.",
         f"{size['seeds']} seeds.",
-        f"{', '.join(size['gathers_with_any'])} also with compensations other than "
-        f"{' and '.join(size['compensations'])}.",
     ]
+    if size["compensations"]:
+        parts += [
+            f"Equal time: {size['time_s']} CPU seconds of vpl-render, "
+            f"{size['equal_time_vpls']} VPLs.",
+            f"{', '.join(size['gathers_with_any'])} also with compensations other than "
+            f"{' and '.join(size['compensations'])}.",
+        ]
     if run.skipped:
         parts.append(f"Left out, as they take too long: {'; '.join(run.skipped)}.")
     parts += [f"{name}: refused ({reason})." for name, reason in sorted(run.refused.items())]
@@ -259,9 +274,10 @@ def run(context: Context) -> None:
                 if not paired(context.size, gather, compensate):
                     continue
                 context.say(f"field: {view.name}, {gather}, {compensate}, equal time")
-                row = all_of.at_equal_time(view, gather, compensate)
+                row = all_of.at_equal_time(view, gather, compensate, found[gather])
                 shown += [row] if row else []
-        add_pictures(context, view, shown)
+        if shown:
+            add_pictures(context, view, shown)
         add_plots(context, view, {g: rows for g, rows in found.items() if rows})
     context.title = "Gathers of virtual point lights, on equal terms"
     context.lead = (
