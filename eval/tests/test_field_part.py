@@ -30,7 +30,7 @@ class FittingSamples(unittest.TestCase):
 
 class TooSlow(unittest.TestCase):
     def test_no_trial_is_run_where_one_sample_would_exceed_the_time(self) -> None:
-        size = {"equal_time_vpls": 10_000, "time_s": 4.0}
+        size = {"equal_time_vpls": 10_000, "candidates_per_vpl": 10, "time_s": 4.0}
         context = mock.Mock(size=size)
         context.configuration.return_value.but.return_value = mock.Mock(vpls=10_000, spp=2)
         run = field.Field(context)
