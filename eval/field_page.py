@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Writes the table of docs/field.md from results of `make -C eval field`.
+"""Writes the table and the plot of docs/field.md from results of `make -C eval field`.
 
-    eval/field_page.py build/eval/field
+    eval/field_page.py build/eval/field --many build/eval/field-many
 
 A row for each gather: relMSE of the indirect light of each scene at equal time, without
-compensation and with the default one, and what it spends.
+compensation and with the default one, and shadow rays at as many VPLs.
 The least error of a scene is bold, and with it those that lie within the standard errors of both.
 """
 
@@ -13,10 +13,12 @@ import json
 from pathlib import Path
 from typing import Any
 
+import write_docs
 from bnvpl_eval import settings
 from rooms_page import put
 
 PAGE = settings.ROOT / "docs/field.md"
+GROWTH = "field-growth-sponza"  # id of the plot
 COMPENSATIONS = ("none", "near-field")  # the second is the default of vpl-render
 Row = dict[str, Any]
 
@@ -34,16 +36,6 @@ def within_the_best(rows: list[Row]) -> list[Row]:
     return [r for r in rows if r["relmse"] - r.get("relmse_error", 0.0) <= limit]
 
 
-def growth(rows: list[Row]) -> str:
-    """How many times the CPU time is that of the fewest VPLs, at the most of them."""
-    by = {
-        scene: sorted((r for r in rows if r["scene"] == scene), key=lambda r: int(r["vpls"]))
-        for scene in {r["scene"] for r in rows}
-    }
-    times = [of[-1]["render_cpu_s"] / of[0]["render_cpu_s"] for of in by.values() if len(of) > 1]
-    return f"{sum(times) / len(times):.1f}" if times else "-"
-
-
 def table(results: list[Row]) -> str:
     rows = [r for r in results if r["part"] == "field"]
     at_time = [r for r in rows if r["at"] == "equal time"]
@@ -57,7 +49,7 @@ def table(results: list[Row]) -> str:
         for r in within_the_best([r for (_, *of), r in shown.items() if tuple(of) == column])
     ]
     heads = ["gather", *(f"{scene}, {compensate}" for scene, compensate in columns)]
-    heads += ["CPU time, most VPLs / fewest", "shadow rays a sample"]
+    heads += ["shadow rays a sample"]
     lines = ["| " + " | ".join(heads) + " |", "|---" * len(heads) + "|"]
     too_slow: list[str] = []
     for gather in sorted({r["gather"] for r in rows}):
@@ -68,7 +60,7 @@ def table(results: list[Row]) -> str:
             cells.append(f"**{text}**" if id(here) in best else text)
         equal = [r for r in rows if r["gather"] == gather and r["at"] == "equal VPLs"]
         rays = [r["shadow_rays"] for r in equal if int(r["vpls"]) == most]
-        cells += [growth(equal), f"{sum(rays) / len(rays):.0f}" if rays else "-"]
+        cells.append(f"{sum(rays) / len(rays):.0f}" if rays else "-")
         if all(cell == "-" for cell in cells):
             too_slow.append(gather)
         else:
@@ -82,10 +74,13 @@ def main() -> None:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("folder", type=Path, help="of results.json")
+    parser.add_argument("--many", type=Path, help="folder of SIZE=many, for the plot of times")
     arguments = parser.parse_args()
     found = json.loads((arguments.folder / "results.json").read_text())
     made = f"<!-- tools of {found['provenance']['commit']}, {found['provenance']['date']} -->"
     put(PAGE, "field", f"{table(found['results'])}\n\n{made}")
+    if arguments.many:
+        write_docs.write_plots(arguments.many, [GROWTH])
 
 
 if __name__ == "__main__":
