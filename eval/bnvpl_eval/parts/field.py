@@ -125,7 +125,8 @@ class Field:
     ) -> dict[str, Any] | None:
         c = self.configuration(view, gather, compensate, self.size["equal_time_vpls"])
         if expected_s(at_equal_vpls, c.vpls) > c.spp * self.size["time_s"]:
-            return self.leave_out(view, gather, compensate)
+            self.leave_out(view, gather, compensate)
+            return None
 
         def cpu_s(spp: int) -> float:
             _, runs = pipeline.image(self.context.runner, view, c.but(spp=spp), 1)
@@ -137,7 +138,8 @@ class Field:
         if spp is None:
             return None
         if spp < 1:
-            return self.leave_out(view, gather, compensate)
+            self.leave_out(view, gather, compensate)
+            return None
         row: dict[str, Any] | None = self.judge(
             view, gather, compensate, c.vpls, spp, EQUAL_TIME
         )
