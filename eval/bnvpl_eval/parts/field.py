@@ -63,10 +63,11 @@ class Field:
 
     def configuration(self, view: View, gather: str, compensate: str, vpls: int) -> Any:
         c = self.context.configuration(view, self.size.get("method", "local"))
+        options = ("--gather", gather, "--compensate", compensate, "--fireflies", "keep")
         return c.but(
             vpls=vpls,
             candidates=vpls * self.size["candidates_per_vpl"],
-            render=("--gather", gather, "--compensate", compensate, "--fireflies", "keep"),
+            render=(*options, *self.size.get("render", ())),
         )
 
     def grouped(self) -> list[dict[str, Any]]:
