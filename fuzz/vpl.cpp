@@ -87,7 +87,7 @@ void requireSane(const VplTable& t) {
   for (const float e : t.relativeError) require(e >= 0.0f, "errors are >= 0");
   for (const Vec3 f : t.flux) require(minComponent(f) >= 0.0f, "flux is >= 0");
   require(t.indirectShare >= 0.0 && t.indirectShare <= 1.0, "a share is 0 to 1");
-  require(t.rMax >= 0.0 && t.areaEstimate >= 0.0 && t.reach >= 0.0, "measures are >= 0");
+  require(t.rMax >= 0.0 && t.areaEstimate >= 0.0 && t.reachFactor >= 0.0, "measures are >= 0");
 }
 
 // What is kept of a table is again one that can be written; two rows, the last one first.

@@ -63,9 +63,9 @@ class Coverage {
     return found;
   }
 
-  // Probability with which pick() returns VPL i for the point: one over the number of VPLs that
-  // cover it, or 0 if i is none of them.
-  float shareOf(uint32_t i, Vec3 at, Vec3 normal) const {
+  // Probability with which pick() returns VPL i for the point, where no more than kMaxEligible
+  // reach it: one over the number of VPLs that cover it, or 0 if i is none of them.
+  float probabilityOf(uint32_t i, Vec3 at, Vec3 normal) const {
     const auto covers = [&](uint32_t k) {
       return compatibleSurfaces(at, normal, position_[k], normal_[k], kPlaneFactor * reach_[k]) &&
              inSight(at, normal, k);
@@ -83,7 +83,7 @@ class Coverage {
   // units squared. The mean over the square of the sum of area * f(point) is the integral of f over
   // the scene's surfaces, weighted by the probability that pick() returns i.
   template <typename Fn>
-  void forEachLayer(uint32_t i, Point2 square, const Fn& fn) const {
+  void forEachSurface(uint32_t i, Point2 square, const Fn& fn) const {
     const float reach = reach_[i], height = kPlaneFactor * reach;
     const Vec3 normal = normal_[i];
     const Vec3 at = position_[i] + Basis(normal).toWorld(sampleDisk(square.x, square.y) * reach);
@@ -93,8 +93,8 @@ class Coverage {
       const Vec3 offset = hit.position - position_[i];
       if (dot(offset, normal) < -height) return;
       if (lengthSquared(offset) < reach * reach) {
-        if (const float share = shareOf(i, hit.position, hit.ng); share > 0.0f)
-          fn(hit, kPi * reach * reach * share / dot(hit.ng, normal));
+        if (const float probability = probabilityOf(i, hit.position, hit.ng); probability > 0.0f)
+          fn(hit, kPi * reach * reach * probability / dot(hit.ng, normal));
       }
       from = accel_.offsetOrigin(hit.position, -hit.ng);
     }
@@ -111,7 +111,7 @@ class Coverage {
 
  private:
   // Max number of VPLs that pick() considers: the first ones found. The default reach finds about
-  // four.
+  // three.
   static constexpr size_t kMaxEligible = 256;
   // Both ends of a guard ray are lifted by this share of the VPL's reach, so that the facets of a
   // curved surface do not occlude it (docs/theory.md, "Guards").

@@ -6,17 +6,18 @@
 
 namespace bnvpl {
 
-unsigned addLeavingLight(const Accelerator& accel, const LightSet& lights, const Bsdf& at,
-                         Vec3 throughput, PathLength length, const SpatialLightSampler* where,
-                         Rng& rng, Vec3& first, Vec3& later, const LeavingGroups& groups) {
+unsigned addLeavingLight(const Accelerator& accel, const LightSet& lights, const Bsdf& start,
+                         Vec3 throughput, PathLength length,
+                         const SpatialLightSampler* lightSampler, Rng& rng, Vec3& first,
+                         Vec3& later, const LeavingGroups& groups) {
   SpecularPath vertex;
   std::optional<Bsdf> scattering;
   LearnedStrata strata;
   for (unsigned bounce = 0;; ++bounce) {
-    const Bsdf& bsdf = bounce == 0 ? at : scattering.emplace(accel.scene(), vertex.hit);
+    const Bsdf& bsdf = bounce == 0 ? start : scattering.emplace(accel.scene(), vertex.hit);
     Vec3& sum = bounce == 0 ? first : later;
     const GroupSink& sink = bounce == 0 ? groups.first : groups.later;
-    if (where) strata = where->at(bsdf.point().position, bsdf.point().ng);
+    if (lightSampler) strata = lightSampler->at(bsdf.point().position, bsdf.point().ng);
     sum +=
         throughput * directLight(accel, lights, Reflected{bsdf},
                                  {learnedBy(strata), LightChoice::One, {}, sink.times(throughput)},
@@ -26,14 +27,14 @@ unsigned addLeavingLight(const Accelerator& accel, const LightSet& lights, const
     if (rng.next() >= survive) return bounce + 1;
     BsdfSample scattered;
     Ray next;
-    if (!scatter(accel, bsdf, LobeGroup::Rough, Transport::Radiance, rng, scattered, next))
+    if (!sampleNextRay(accel, bsdf, LobeGroup::Rough, Transport::Radiance, rng, scattered, next))
       return bounce + 1;
     throughput *= scattered.weight * (1.0f / survive);
     const Arrival arrival{scattered.pdf, bsdf.point().position, LightChoice::One,
                           learnedBy(strata)};
     vertex =
         followSpecularPath(accel, lights, next.origin, next.direction, arrival, rng,
-                           {nullptr, where, sink.times(throughput),
+                           {nullptr, lightSampler, sink.times(throughput),
                             length.firstBounce ? GroupSink{} : groups.later.times(throughput)});
     sum += throughput * vertex.emissionFirst;
     if (length.firstBounce) return bounce + 1;

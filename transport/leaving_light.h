@@ -18,11 +18,12 @@ struct LeavingGroups {
 
 // Adds throughput * radiance towards wo of the vertex, by light sampling and scattering with
 // multiple importance sampling (Veach 1997, section 10). `first` gets the direct light of the
-// vertex, `later` the rest. `at` is the vertex's BSDF, or one that represents it. `where` has the
-// distributions by which lights are sampled; null: by power. Returns the number of rough vertices
-// of the path, this one included; each takes about two rays.
-unsigned addLeavingLight(const Accelerator& accel, const LightSet& lights, const Bsdf& at,
-                         Vec3 throughput, PathLength length, const SpatialLightSampler* where,
-                         Rng& rng, Vec3& first, Vec3& later, const LeavingGroups& groups = {});
+// vertex, `later` the rest. `start` is the vertex's BSDF, or one that represents it. `lightSampler`
+// has the distributions by which lights are sampled; null: by power. Returns the number of rough
+// vertices of the path, this one included; each takes about two rays.
+unsigned addLeavingLight(const Accelerator& accel, const LightSet& lights, const Bsdf& start,
+                         Vec3 throughput, PathLength length,
+                         const SpatialLightSampler* lightSampler, Rng& rng, Vec3& first,
+                         Vec3& later, const LeavingGroups& groups = {});
 
 }  // namespace bnvpl

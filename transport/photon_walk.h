@@ -78,7 +78,8 @@ class PhotonWalk {
     const bool last = lobes.specular() ? ++specular_ > kMaxSpecular : ++rough_ >= maxBounces_;
     BsdfSample sample;
     Ray next;
-    if (last || !scatter(accel, bsdf, lobes.group, Transport::Photons, rng_, sample, next)) return;
+    if (last || !sampleNextRay(accel, bsdf, lobes.group, Transport::Photons, rng_, sample, next))
+      return;
     const Vec3 onward = flux_ * sample.weight * (1.0f / (lobes.probability * survive));
     if (!isFinite(onward)) {
       fate_.finite = false;

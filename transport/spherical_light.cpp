@@ -48,8 +48,10 @@ float cosinesOverCone(const SphereCone& cone, Vec3 received, Vec3 normal) {
 
 // The same for a receiver inside, over the part of its hemisphere into which the VPL shines.
 float cosinesOverHemisphere(Vec3 received, Vec3 normal, float radius2) {
-  const float cosine = std::clamp(-dot(received, normal), -1.0f, 1.0f);
-  return 2.0f / (3.0f * kPi * radius2) * (sineOf(cosine) + (kPi - std::acos(cosine)) * cosine);
+  const float emission = length(normal);  // below 1 where a mean of normals stands for many
+  const float cosine = std::clamp(-dot(received, normal) / emission, -1.0f, 1.0f);
+  return 2.0f * emission / (3.0f * kPi * radius2) *
+         (sineOf(cosine) + (kPi - std::acos(cosine)) * cosine);
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ namespace bnvpl {
 
 struct SphericalVpl {
   Vec3 toCentre;  // from the receiver
-  Vec3 normal;    // unit, on the lit side
+  Vec3 normal;    // on the lit side; unit, or the mean of unit normals
   float radius2;  // squared radius, > 0
 };
 

@@ -7,12 +7,12 @@
 //              replaces d^2, so that light falls off with 1/boundedDistance2; it must be at least
 //              d2 and not decrease with d2
 //   removed    share of a point light's 1/d^2 that the kind leaves out at a distance, and that
-//              compensation adds back: 1 - d^2 / boundedDistance2
+//              compensation adds back: 1 - d^2 / boundedDistance2; 0 for spheres, which move it
 //   fromCentre whether the light is the product of BSDF, cosines and falloff towards the VPL. Else
 //              it comes from a sphere of radius `size`, transport/spherical_light.h integrates it,
-//              and its falloff is a typical value; leastDistance2() bounds it
+//              and its falloff is a typical value; minDistance2() bounds it
 //   emitted    emission in a direction relative to that along the axis, times the distance
-//   mostEmitted, leastEmitted, expectedEmitted
+//   maxEmitted, minEmitted, expectedEmitted
 //              the same for a cluster whose axes fill a cone, without the distance: an upper bound
 //              for directions whose cosine with the cone's axis is at most the given one, a lower
 //              bound for those where it is at least that, and a typical value that is 0 only where
@@ -38,13 +38,13 @@ struct LambertEmission {
   static float emitted(Vec3 axis, Vec3 toLight) { return -dot(axis, toLight); }
   // `cosine` is that of the direction with the axis of the cone, which has the given half angle.
   template <typename F>
-  static F mostEmitted(F cosine, F cosHalfAngle, F sinHalfAngle) {
+  static F maxEmitted(F cosine, F cosHalfAngle, F sinHalfAngle) {
     const F zero = everyLane<F>(0.0f);
     const F nearest = cosineOfLess(cosine, cosHalfAngle, sinHalfAngle);
     return selectAtLeast(zero, cosHalfAngle, everyLane<F>(1.0f), larger(nearest, zero));
   }
   // `cosine` is the least of the direction with the axis of the cone.
-  static float leastEmitted(float cosine, float cosHalfAngle, float sinHalfAngle) {
+  static float minEmitted(float cosine, float cosHalfAngle, float sinHalfAngle) {
     return larger(cosine * cosHalfAngle - sineOf(cosine) * sinHalfAngle, 0.0f) *
            (cosHalfAngle > 0.0f ? 1.0f : 0.0f);
   }
@@ -94,8 +94,9 @@ struct YukselLight : LambertEmission {
     return larger(everyLane<F>(0.5f) * (slant2 + squareRoot(d2 * slant2)), d2);
   }
   static float removed(float distanceOverSize) {
-    const float d2 = distanceOverSize * distanceOverSize;
-    return 1.0f - d2 / boundedDistance2(d2, 1.0f);
+    if (!(distanceOverSize > 0.0f)) return 1.0f;
+    const float size2 = 1.0f / (distanceOverSize * distanceOverSize);  // over d^2
+    return 1.0f - 2.0f / (1.0f + size2 + std::sqrt(1.0f + size2));
   }
 };
 
@@ -117,7 +118,7 @@ struct SphericalLight : LambertEmission {
   }
   // Replaces d^2 in bounds. `box2`: squared distance to a box that holds the sphere.
   template <typename F>
-  static F leastDistance2(F box2, F size2) {
+  static F minDistance2(F box2, F size2) {
     const F d = squareRoot(box2) + squareRoot(size2), d2 = d * d;
     return everyLane<F>(0.5f) * (d2 + d * squareRoot(larger(d2 - size2, everyLane<F>(0.0f))));
   }
@@ -127,11 +128,11 @@ struct SphericalLight : LambertEmission {
 // What replaces d^2 in an upper bound of the light of VPLs at least `size` large, whose box
 // (VplLights::box) is at the given distance.
 template <typename Kind, typename F>
-F leastDistance2(F box2, F size2) {
+F minDistance2(F box2, F size2) {
   if constexpr (Kind::fromCentre) {
     return Kind::boundedDistance2(box2, size2);
   } else {
-    return Kind::leastDistance2(box2, size2);
+    return Kind::minDistance2(box2, size2);
   }
 }
 
@@ -191,7 +192,7 @@ inline float falloff(LightKind kind, float distanceSquared, float size2) {
 // Its upper bound for VPLs whose box is at that distance, 1/m2.
 inline float maxFalloff(LightKind kind, float boxDistanceSquared, float size2) {
   return 1.0f / withKind(kind, [&](auto k) {
-           return leastDistance2<decltype(k)>(boxDistanceSquared, size2);
+           return minDistance2<decltype(k)>(boxDistanceSquared, size2);
          });
 }
 

@@ -98,7 +98,7 @@ VplTable keepRows(const VplTable& table, std::span<const uint32_t> rows) {
   kept.stage = table.stage;
   kept.rMax = table.rMax;
   kept.areaEstimate = table.areaEstimate;
-  kept.reach = table.reach;
+  kept.reachFactor = table.reachFactor;
   kept.indirectShare = table.indirectShare;
   kept.emitPoints = table.emitPoints;
   kept.sceneHash = table.sceneHash;

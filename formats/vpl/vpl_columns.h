@@ -85,7 +85,7 @@ inline constexpr std::array<VplColumn, 11> kVplColumns{{
      "leaving this VPL's share of the surface, linear sRGB"},
     {"photons", &VplTable::photons, "", "1", VplStage::Lit, vpl_check::kAny, "deposits received"},
     {"relative_error", &VplTable::relativeError, "", "1", VplStage::Lit, vpl_check::kZeroOrMore,
-     "standard error of the flux over the flux; 0 without photons"},
+     "standard error of the flux over the flux; 0 without flux"},
     {"emit_position", &VplTable::emitPosition, "xyz", "scene unit", VplStage::Lit,
      vpl_check::kFinite,
      "where the light leaves from, in equal parts: one point or more of the surface near position",

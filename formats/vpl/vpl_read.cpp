@@ -45,7 +45,7 @@ VplTable makeTable(const InputFile& in, Bytes file, Opening opening) {
   VplTable table = std::move(opening.shape);
   table.rMax = header.rMax;
   table.areaEstimate = header.areaEstimate;
-  table.reach = header.reach;
+  table.reachFactor = header.reach;
   table.indirectShare = header.indirectShare;
   table.sceneHash = header.sceneHash;
   table.checksum = header.checksum;

@@ -42,9 +42,9 @@ struct VplTable {
   double areaEstimate = 0.0;  // indirectly visible area, world units squared
 
   // since Lit
-  // Distance within which a VPL received photons, in units of its radius; 0: placed from the
+  // Distance from which light was collected for a VPL, in units of its radius; 0: placed from the
   // lights.
-  double reach = 0.0;
+  double reachFactor = 0.0;
   std::vector<Vec3> flux;
   std::vector<uint64_t> photons;
   std::vector<float> relativeError;

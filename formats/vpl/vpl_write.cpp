@@ -62,7 +62,7 @@ void refuseUnwritable(const fs::path& file, const VplTable& table, const std::st
                        "; not written, the old file, if any, is unchanged");
   }
   require(isMeasure(table.rMax), "r_max is negative or not finite");
-  require(isMeasure(table.reach), "reach is negative or not finite");
+  require(isMeasure(table.reachFactor), "reach is negative or not finite");
   require(isShare(table.indirectShare), "share of indirect light is not 0 to 1");
   require(isMeasure(table.areaEstimate), "area is negative or not finite");
   require(isProvenance(provenance), "provenance is not a JSON array");
@@ -83,7 +83,7 @@ void writeVpl(AtomicFile& file, const VplTable& table) {
   header.columnCount = static_cast<uint32_t>(layout.directory.size());
   header.rMax = table.rMax;
   header.areaEstimate = table.areaEstimate;
-  header.reach = table.reach;
+  header.reach = table.reachFactor;
   header.indirectShare = table.indirectShare;
   header.checksum = hashPieces(filePieces(header, layout, provenance, table));
   for (const Bytes piece : filePieces(header, layout, provenance, table)) file.write(piece);

@@ -39,7 +39,7 @@ TEST(Random, StreamsAndSeedsShareNoKey) {
     for (const Stream s :
          {Stream::PlaceCamera, Stream::PlaceLight, Stream::Eliminate, Stream::Photons,
           Stream::PixelSamples, Stream::LightTree, Stream::Plot, Stream::AreaEstimate,
-          Stream::LightTracer, Stream::PrimaryPoints, Stream::VplPaths}) {
+          Stream::LightTracer, Stream::FilmPoints, Stream::VplPaths}) {
       keys.insert(streamKey(seed, s));
     }
   }

@@ -108,7 +108,7 @@ inline void expectSame(const VplTable& a, const VplTable& b) {
   EXPECT_EQ(a.stage, b.stage);
   EXPECT_EQ(a.rMax, b.rMax);
   EXPECT_EQ(a.areaEstimate, b.areaEstimate);
-  EXPECT_EQ(a.reach, b.reach);
+  EXPECT_EQ(a.reachFactor, b.reachFactor);
   EXPECT_EQ(a.indirectShare, b.indirectShare);
   EXPECT_EQ(a.emitPoints, b.emitPoints);
   EXPECT_EQ(a.sceneHash, b.sceneHash);
@@ -137,7 +137,7 @@ inline VplTable smallTable(VplStage stage) {
     table.areaEstimate = 12.0;
   }
   if (stage >= VplStage::Lit) {
-    table.reach = 2.5;
+    table.reachFactor = 2.5;
     table.flux = {{1.0f, 2.0f, 4.0f}, {0.0f, 0.0f, 0.0f}};
     table.photons = {4294967297u, 0};
     table.relativeError = {0.0625f, 0.0f};

@@ -46,14 +46,14 @@ TEST(VplColumns, KeptRowsHaveAllTheirColumns) {
   for (const VplStage stage : kStages) {
     VplTable table = validRows(stage, 20);
     table.extras = someExtras(20);
-    table.rMax = 0.5, table.areaEstimate = 3.0, table.reach = 1.5, table.sceneHash = 7;
+    table.rMax = 0.5, table.areaEstimate = 3.0, table.reachFactor = 1.5, table.sceneHash = 7;
     table.provenance = "[{}]", table.checksum = 9, table.indirectShare = 0.25;
     const std::vector<uint32_t> rows{19, 3, 0, 3};
     const VplTable kept = keepRows(table, rows);
     EXPECT_EQ(kept.checksum, 0u);
     EXPECT_EQ(kept.rMax, 0.5);
     EXPECT_EQ(kept.areaEstimate, 3.0);
-    EXPECT_EQ(kept.reach, 1.5);
+    EXPECT_EQ(kept.reachFactor, 1.5);
     EXPECT_EQ(kept.indirectShare, 0.25);
     EXPECT_EQ(kept.sceneHash, 7u);
     EXPECT_EQ(kept.provenance, "[{}]");

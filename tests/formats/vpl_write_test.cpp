@@ -108,7 +108,7 @@ TEST_F(VplWrite, WrongValuesAreRefusedWithColumnAndRow) {
   expectRefused(f, "column first_bounce_flux, row 0: above the flux",
                 [](VplTable& t) { t.firstBounceFlux[0].z = 4.5f; });
   expectRefused(f, "r_max", [](VplTable& t) { t.rMax = -1.0; });
-  expectRefused(f, "reach", [](VplTable& t) { t.reach = -1.0; });
+  expectRefused(f, "reach", [](VplTable& t) { t.reachFactor = -1.0; });
   expectRefused(f, "area", [](VplTable& t) { t.areaEstimate = static_cast<double>(kNan); });
   for (const double share : {-0.5, 1.5, static_cast<double>(kNan)})
     expectRefused(f, "share of indirect light", [&](VplTable& t) { t.indirectShare = share; });

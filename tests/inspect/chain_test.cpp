@@ -13,7 +13,7 @@ class DeepCheck : public InspectTest {
     candidates_ = threeRows(VplStage::Candidates);
     kept_ = threeRows(VplStage::Eliminated);
     lit_ = threeRows(VplStage::Lit);
-    lit_.reach = 2.0;
+    lit_.reachFactor = 2.0;
   }
   // Writes the tables as a chain with correct histories; returns the problem found in the rows.
   std::string problem() {

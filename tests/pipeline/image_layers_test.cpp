@@ -229,5 +229,14 @@ TEST_F(ImageLayers, MatrixGathersTellTheEntriesTheyEvaluate) {
   }
 }
 
+TEST_F(ImageLayers, IlluminationCutTellsThePairsAndRaysOfItsPlan) {
+  makeStages(scene_);
+  succeed("vpl-render", scene_ + " " + path("lit.vpl") + " --spp 1 --size 24x18 -o " +
+                            path("p.exr") + " --gather illumination-cut --stats " + path("p.json"));
+  const Json stats = Json::parse(readAll(at("p.json")));
+  EXPECT_GT(stats.at("plan_pairs").get<double>(), 24.0);
+  EXPECT_GT(stats.at("plan_rays").get<double>(), 24.0);
+}
+
 }  // namespace
 }  // namespace bnvpl

@@ -59,7 +59,7 @@ TEST(Caustics, PhotonsAndRaysShareTheLight) {
 }
 
 NearFieldRays nearField(const World& world, const VplTable& lit, const char* compensate,
-                        GatherPoint point) {
+                        PointGatherFn point) {
   return {world.accel,
           world.lights,
           std::move(point),
@@ -81,7 +81,7 @@ TEST(Caustics, VplsKnowTheLightBehindNearSpecularLobes) {
   const Bsdf bsdf(cover, Vec3(1.0f));
   const auto gathers = [&](const char* compensate) {
     size_t points = 0;
-    const GatherPoint count = [&](const Bsdf&, unsigned, Rng&, const GroupSink&) {
+    const PointGatherFn count = [&](const Bsdf&, unsigned, Rng&, const GroupSink&) {
       ++points;
       return Gathered{};
     };
@@ -113,7 +113,7 @@ TEST(Caustics, RaysFollowTheLobesThatVplsDoNotCover) {
     if (world.scene.materials[wall.material].name == "Red") seen.ng = seen.ns = seen.wo = way;
   }
   const Bsdf bsdf(seen, Vec3(1.0f));
-  const GatherPoint nothing = [](const Bsdf&, unsigned, Rng&, const GroupSink&) {
+  const PointGatherFn nothing = [](const Bsdf&, unsigned, Rng&, const GroupSink&) {
     return Gathered{};
   };
   const NearFieldRays rays = nearField(world, lit, "near-field", nothing);

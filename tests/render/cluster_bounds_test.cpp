@@ -6,6 +6,7 @@
 #include "tests/render/random_lights.h"
 #include "tools/common/files/streams.h"
 #include "tools/render/gather/receiver_tree.h"
+#include "tools/render/light_tree/normal_cone.h"
 #include "transport/spherical_light.h"
 
 namespace bnvpl::test {
@@ -21,6 +22,36 @@ Vec3 transferOf(const VplLights& vpls, size_t i, const Bsdf& bsdf) {
 }
 
 float sumOf(Vec3 v) { return v.x + v.y + v.z; }
+
+// The normals of a tilted wall, whose cosine with themselves may round to less than 1.
+TEST(NormalCones, OfEqualNormalsHaveNoAngle) {
+  Rng rng(streamKey(4, Stream::Plot), 0);
+  for (int i = 0; i < 1000; ++i) {
+    const float u = rng.next(), v = rng.next();
+    const Vec3 normal = sampleSphere(u, v);
+    const NormalCone cone = merged(merged({normal}, {normal}), {normal});
+    EXPECT_EQ(cone.cosHalfAngle, 1.0f) << i;
+  }
+}
+
+TEST(NormalCones, HoldWhatTheyAreMergedFrom) {
+  Rng rng(streamKey(5, Stream::Plot), 0);
+  for (int i = 0; i < 2000; ++i) {
+    const float u = rng.next(), v = rng.next(), spread = std::pow(10.0f, -6.0f * rng.next());
+    const Vec3 axis = sampleSphere(u, v);
+    std::vector<Vec3> normals;
+    NormalCone cone{};
+    for (int k = 0; k < 8; ++k) {
+      const float s = rng.next(), t = rng.next();
+      normals.push_back(normalize(axis + sampleSphere(s, t) * spread));
+      cone = k == 0 ? NormalCone{normals[0]} : merged(cone, {normals.back()});
+    }
+    for (const Vec3 n : normals) EXPECT_GE(dot(n, cone.axis), cone.cosHalfAngle - 2e-6f) << i;
+    if (spread < 0.1f) {
+      EXPECT_GT(cone.cosHalfAngle, 0.9f) << spread;
+    }
+  }
+}
 
 class ClusterBounds : public testing::TestWithParam<std::tuple<std::string_view, bool>> {
  protected:

@@ -17,7 +17,7 @@ struct GatherOf {
                  .make({world.accel, world.lights, lit, vpls, tree, 1,
                         [this] {
                           looksAtFilm = true;
-                          return PrimaryPoints{};
+                          return FilmPoints{};
                         },
                         silent},
                        values);

@@ -16,8 +16,8 @@ void requireEnough(size_t candidates, uint64_t count) {
   if (candidates > INT32_MAX) throw InputError("more than 2^31 - 1 candidates; place fewer");
   if (count <= candidates) return;
   throw InputError("asked to keep " + std::to_string(count) + " of " + std::to_string(candidates) +
-                   " candidates; rerun vpl-place -n at least " + std::to_string(count * 5) +
-                   " (5 to 20 x " + std::to_string(count) + ")");
+                   " candidates; rerun vpl-place -n at least " + std::to_string(count * 20) +
+                   " (20 to 40 x " + std::to_string(count) + ")");
 }
 
 }  // namespace
@@ -49,7 +49,7 @@ EliminateResult eliminate(const VplTable& candidates, const Values& options,
                      " needs the scene; add --scene SCENE");
   }
   requireEnough(candidates.size(), options[kEliminateCountOption]);
-  const Kept kept = method.make({candidates, accel, lights, progress}, options);
+  const Kept kept = method.run({candidates, accel, lights, progress}, options);
   EliminateResult result{keepRows(candidates, kept.rows), kept.rMax, kept.area};
   VplTable& table = result.table;
   if (table.stage == VplStage::Candidates) table.stage = VplStage::Eliminated;

@@ -38,11 +38,12 @@ struct EliminateInputs {
 struct EliminateMethod {
   std::string_view name, summary;
   std::span<const Option> options;
-  Kept (*make)(const EliminateInputs&, const Values&);
+  Kept (*run)(const EliminateInputs&, const Values&);
   VplStage takes = VplStage::Candidates;  // stage of the input table
   bool needsScene = false;
 };
-std::span<const EliminateMethod* const> eliminateMethods();  // one for each folder beside this file
+// Defined in the build folder by cmake/Methods.cmake, from the folders beside this file.
+std::span<const EliminateMethod* const> eliminateMethods();
 
 // Options of the stage: count, method, and those of each method.
 const StageSpec& eliminateSpec();

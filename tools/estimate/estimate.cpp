@@ -29,7 +29,7 @@ Work estimateWork(const VplTable& vpls, const Values& options) {
 EstimateResult estimate(const VplTable& vpls, const Accelerator& accel, const LightSet& lights,
                         const Values& options, const ProgressFn& progress, const Resume& resume) {
   return methodNamed(estimateMethods(), options[kMethodSlot])
-      .make({vpls, accel, lights, progress, resume}, options);
+      .run({vpls, accel, lights, progress, resume}, options);
 }
 
 }  // namespace bnvpl

@@ -52,10 +52,11 @@ struct Work {
 struct EstimateMethod {
   std::string_view name, summary;
   std::span<const Option> options;
-  EstimateResult (*make)(const EstimateInputs&, const Values&);
+  EstimateResult (*run)(const EstimateInputs&, const Values&);
   Work (*work)(const VplTable& vpls, const Values&);
 };
-std::span<const EstimateMethod* const> estimateMethods();  // one for each folder beside this file
+// Defined in the build folder by cmake/Methods.cmake, from the folders beside this file.
+std::span<const EstimateMethod* const> estimateMethods();
 
 // Options of the stage: seed, method, and those of each method.
 const StageSpec& estimateSpec();

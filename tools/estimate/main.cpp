@@ -1,4 +1,4 @@
-// vpl-estimate: photons from the real lights give the VPLs their flux.
+// vpl-estimate: photons from the lights and paths from the VPLs estimate the flux of each VPL.
 //   vpl-estimate scene.toml vpls.vpl -o lit.vpl --photons 10M
 #include <CLI/CLI.hpp>
 
@@ -6,13 +6,16 @@
 #include "formats/vpl/vpl_io.h"
 #include "tools/common/run/memory.h"
 #include "tools/common/stage/stage_run.h"
+#include "tools/estimate/photon_sums.h"
 #include "tools/estimate/report.h"
 
 namespace bnvpl {
 namespace {
 
-// Measured: 600 per VPL. Each thread has its own sums.
-constexpr double kBytesPerVplAndThread = 112;
+// Each thread has its own sums of photons: those of a VPL's flux, and its emission points.
+double bytesPerVplAndThread(const Values& options) {
+  return sizeof(VplSum) + static_cast<double>(options[kEmitPointsOption]) * sizeof(EmitPoint);
+}
 
 int runEstimate(const StageRequest& request, const fs::path& input, const ToolOptions& tool) {
   StageRun run("vpl-estimate", request, tool);
@@ -21,7 +24,7 @@ int runEstimate(const StageRequest& request, const fs::path& input, const ToolOp
   run.used.writes("-o", request.output, {request.shard ? OutputKind::Shard : OutputKind::Lit});
   run.checkFiles();
   if (!run.estimating()) {
-    requireMemoryFor(input, kBytesPerEstimated + kBytesPerVplAndThread * threadsInUse(),
+    requireMemoryFor(input, kBytesPerEstimated + bytesPerVplAndThread(options) * threadsInUse(),
                      "keep fewer with vpl-eliminate -n, or lower --threads");
   }
   const VplTable vpls = readVpl(input, VplStage::Eliminated);

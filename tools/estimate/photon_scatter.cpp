@@ -285,7 +285,7 @@ void PhotonScatter::deposit(uint32_t vpl, const PhotonHit& hit, Vec3 flux, Photo
   }
   const double relative = double{mean(flux)} * perPhotonPower_;
   addChecked(s.squares, std::llrint(relative * relative / squareUnit_));
-  const double weight = share_.empty() || hit.onlyPhotons ? 1.0 : share_[vpl];
+  const double weight = emitPointWeights_.empty() || hit.onlyPhotons ? 1.0 : emitPointWeights_[vpl];
   sums.points.offer(vpl, relative * weight, hit.point);
   if (groups_ > 0) {
     GroupSum& group = sums.groups[size_t{vpl} * groups_ + hit.group];

@@ -22,8 +22,9 @@ namespace bnvpl {
 // range.
 inline constexpr auto kPhotonsOption = inTopic(
     Topic::Main, countOption("photons", "10M", 0x1p36, "", "photons from all lights in total"));
-inline constexpr auto kPhotonBouncesOption = inTopic(
-    Topic::Quality, wholeOption("max-bounces", "32", 1, 1000, "", "diffuse hits of a photon"));
+inline constexpr auto kPhotonBouncesOption =
+    inTopic(Topic::Quality,
+            wholeOption("max-bounces", "32", 1, 1000, "", "hits of a photon on rough surfaces"));
 inline constexpr auto kPhotonOptions = optionTable(kPhotonsOption, kEmissionOption, kRadiusOption,
                                                    kPhotonBouncesOption, kEmitPointsOption);
 inline Work photonWork(const VplTable&, const Values& options) {
@@ -47,7 +48,7 @@ class PhotonScatter {
 
   // Sets the weight of each VPL's hits as emission points. Light that only photons find has weight
   // 1, and so have all hits unless weights are set.
-  void setShare(std::span<const double> share) { share_ = share; }
+  void setEmitPointWeights(std::span<const double> weights) { emitPointWeights_ = weights; }
   // deposit() adds all or a part of a hit's flux to one VPL. tally() records what became of a whole
   // hit.
   void deposit(uint32_t vpl, const PhotonHit& hit, Vec3 flux, PhotonSums& sums) const;
@@ -75,7 +76,7 @@ class PhotonScatter {
   // Unit of VplSum::squares, which leaves room for the deposits of all photons.
   double squareUnit_;
   Coverage coverage_;
-  std::span<const double> share_;
+  std::span<const double> emitPointWeights_;
 };
 
 // Deposits a hit; must be thread-safe. `rng` continues the photon's random numbers.

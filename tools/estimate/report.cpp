@@ -45,7 +45,7 @@ std::string causeOfDark(const EstimateResult& result, bool none) {
     return "all photons together made " + formatSi(double(a.hits)) + " hits, for " + formatSi(all) +
            " VPLs; raise --photons";
   }
-  if (result.table.reach < kCovering) {
+  if (result.table.reachFactor < kCovering) {
     return "they reach so little that most light falls between them; raise --radius (" +
            std::string(kRadiusOption.defaultText) + " unless given)";
   }

@@ -31,8 +31,8 @@ double PathSums::variance() const {
   return std::max(0.0, squares - meanFlux() * meanFlux() / n) * n / (n - 1.0);
 }
 
-PathSums VplPaths::gather(uint32_t vpl, uint64_t points, EmitPoints& emitPoints,
-                          std::span<GroupPathSum> byGroup) const {
+PathSums VplPaths::tracePaths(uint32_t vpl, uint64_t points, EmitPoints& emitPoints,
+                              std::span<GroupPathSum> byGroup) const {
   PathSums r;
   r.points = points;
   Rng shift(settings_.key, vpl);
@@ -41,7 +41,7 @@ PathSums VplPaths::gather(uint32_t vpl, uint64_t points, EmitPoints& emitPoints,
     double atPoint = 0.0;
     Rng rng(random64(settings_.key, vpl, 1), k);
     ++r.rays;
-    coverage_.forEachLayer(vpl, r2Sequence(k, x, y), [&](const SurfacePoint& hit, float area) {
+    coverage_.forEachSurface(vpl, r2Sequence(k, x, y), [&](const SurfacePoint& hit, float area) {
       const double light = add(hit, area, rng, r, byGroup);
       emitPoints.offer(vpl, light, hit);
       atPoint += light;
@@ -105,10 +105,10 @@ std::unique_ptr<const SpatialLightSampler> makeSpatialLightSampler(const Estimat
       streamKey(seed, Stream::PathLights), ProgressFn{});
 }
 
-PathResult gatherAll(const EstimateInputs& in, const VplPaths& gatherer,
-                     std::span<const uint64_t> points) {
-  const size_t groups = gatherer.groups();
-  PathResult result{std::vector<PathSums>(points.size()), gatherer.emptyEmitPoints(),
+PathResult tracePathsOfAll(const EstimateInputs& in, const VplPaths& vplPaths,
+                           std::span<const uint64_t> points) {
+  const size_t groups = vplPaths.groups();
+  PathResult result{std::vector<PathSums>(points.size()), vplPaths.emptyEmitPoints(),
                     std::vector<GroupPathSum>(points.size() * groups)};
   std::vector<PathSums>& sums = result.sums;
   const size_t perVpl = sums.empty() ? 0 : result.points.winners().size() / sums.size();
@@ -118,7 +118,7 @@ PathResult gatherAll(const EstimateInputs& in, const VplPaths& gatherer,
   const auto reportUnit = [&](size_t unit) {
     uint64_t all = 0;
     for (size_t i = unit * kVplsPerUnit; i < endOf(unit); ++i) all += points[i];
-    in.progress(gatherer.pathsOf(all));
+    in.progress(vplPaths.pathsOf(all));
   };
   const auto ofUnit = [&](size_t unit) {
     const size_t begin = unit * kVplsPerUnit;
@@ -155,8 +155,8 @@ PathResult gatherAll(const EstimateInputs& in, const VplPaths& gatherer,
       done, resume,
       [&](size_t unit) {
         for (size_t i = unit * kVplsPerUnit; i < endOf(unit); ++i)
-          sums[i] = gatherer.gather(static_cast<uint32_t>(i), points[i], result.points,
-                                    std::span(result.groups).subspan(i * groups, groups));
+          sums[i] = vplPaths.tracePaths(static_cast<uint32_t>(i), points[i], result.points,
+                                        std::span(result.groups).subspan(i * groups, groups));
         if (in.progress) reportUnit(unit);
       },
       [&] { return encode(done, result); });

@@ -52,8 +52,8 @@ class VplPaths {
 
   // Estimates the flux of one VPL from points of its disk, and offers them as emission points.
   // `byGroup` receives the flux of each light group.
-  PathSums gather(uint32_t vpl, uint64_t points, EmitPoints& emitPoints,
-                  std::span<GroupPathSum> byGroup) const;
+  PathSums tracePaths(uint32_t vpl, uint64_t points, EmitPoints& emitPoints,
+                      std::span<GroupPathSum> byGroup) const;
   uint32_t groups() const { return groups_; }  // light groups; 0: not told apart
   EmitPoints emptyEmitPoints() const {
     return {in_.vpls, settings_.emitPoints, mix64(settings_.key)};
@@ -84,11 +84,11 @@ struct PathResult {
 
 // Estimates the flux of every VPL i from points[i] points. `in.resume` and `in.progress` are for
 // this work alone; progress counts paths.
-PathResult gatherAll(const EstimateInputs& in, const VplPaths& gatherer,
-                     std::span<const uint64_t> points);
+PathResult tracePathsOfAll(const EstimateInputs& in, const VplPaths& vplPaths,
+                           std::span<const uint64_t> points);
 // Adds the flux by light group, times `share` of each VPL.
 void addGroupsTo(VplGroups& groups, const PathResult& paths, std::span<const double> share = {});
-// Resume state of gatherAll() when all of its work is done.
+// Resume state of tracePathsOfAll() when all of its work is done.
 std::string finishedState(const PathResult& result);
 
 }  // namespace bnvpl

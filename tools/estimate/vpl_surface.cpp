@@ -10,7 +10,7 @@ std::vector<float> reachOf(const VplTable& vpls, float radius) {
 
 void beginLit(VplTable& vpls, float radius) {
   vpls.stage = VplStage::Lit;
-  vpls.reach = double{radius};
+  vpls.reachFactor = double{radius};
   vpls.flux.resize(vpls.size());
   vpls.photons.resize(vpls.size());
   vpls.relativeError.resize(vpls.size());

@@ -1,4 +1,4 @@
-// vpl-place: places candidate VPLs where camera paths hit after their first diffuse bounce.
+// vpl-place: places candidate VPLs where camera paths hit after their first rough bounce.
 //   vpl-place scene.toml -o candidates.vpl -n 60k
 #include <CLI/CLI.hpp>
 

@@ -33,7 +33,7 @@ class ShardTrace {
         part_(static_cast<double>(count) * static_cast<double>(shard().parts()) /
               static_cast<double>(shard().of)),
         wanted_(part_ * (1.0 + spare)),
-        most_(static_cast<double>(count)) {
+        max_(static_cast<double>(count)) {
     for (std::string_view bytes = resume.state; !bytes.empty();) {
       std::array<uint64_t, 1> size{};
       takeArray(bytes, size);
@@ -51,7 +51,7 @@ class ShardTrace {
 
   // Rows still to be found. No shard needs more than the count of the whole.
   double rowsLeft() const {
-    return std::min(wanted_ + kDeviations * std::sqrt(squares_), most_) -
+    return std::min(wanted_ + kDeviations * std::sqrt(squares_), max_) -
            static_cast<double>(result_.rows);
   }
   size_t chunksLeft() const {
@@ -80,7 +80,7 @@ class ShardTrace {
   }
 
   const Resume& resume_;
-  double part_, wanted_, most_, squares_ = 0.0;
+  double part_, wanted_, max_, squares_ = 0.0;
   uint64_t chunks_ = 0;
   PlaceResult result_;
   std::string state_;
@@ -136,11 +136,11 @@ PathRows decodeRows(std::string_view bytes, uint64_t begin) {
   };
   requireSize(bytes.size() >= sizeof counts);
   takeArray(bytes, counts);
-  const auto [size, flux, accel, escaped, absorbed, complete, nonFinite] = counts;
+  const auto [size, flux, rays, escaped, absorbed, complete, nonFinite] = counts;
   requireSize(size <= bytes.size());
   requireSize(bytes.size() == size * ((flux ? 5 : 3) * sizeof(Vec3) + sizeof(uint16_t)));
   PathRows chunk;
-  chunk.rays = accel, chunk.escaped = escaped, chunk.absorbed = absorbed;
+  chunk.rays = rays, chunk.escaped = escaped, chunk.absorbed = absorbed;
   chunk.complete = complete, chunk.nonFinite = nonFinite;
   for (std::vector<Vec3>* column : columns(chunk.rows)) {
     const bool ofLight = column == &chunk.rows.flux || column == &chunk.rows.firstBounceFlux;

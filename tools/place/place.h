@@ -68,7 +68,8 @@ struct PlaceMethod {
   bool forView = true;                    // whether the rows depend on camera and film
   VplStage makes = VplStage::Candidates;  // the stage that `finish` gives the table
 };
-std::span<const PlaceMethod* const> placeMethods();  // one for each folder beside this file
+// Defined in the build folder by cmake/Methods.cmake, from the folders beside this file.
+std::span<const PlaceMethod* const> placeMethods();
 
 // Options of the stage: count, seed, method, and those of each method.
 const StageSpec& placeSpec();

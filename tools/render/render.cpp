@@ -133,7 +133,7 @@ const StageSpec& renderSpec() {
        {"gather", "tilecuts", "how VPLs are gathered", entriesOf(gatherMethods()), {indirect}},
        {"compensate",
         "near-field",
-        "what restores the light that clamped or missing VPLs lose",
+        "what adds the light that clamping removes and that no VPL carries",
         entriesOf(compensateMethods()),
         {indirect, sampleLit},
         Topic::Expert}},

@@ -19,7 +19,7 @@
 
 #include <optional>
 
-#include "transport/bsdf/scatter.h"
+#include "transport/bsdf/bsdf_sample.h"
 
 namespace bnvpl {
 

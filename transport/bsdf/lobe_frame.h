@@ -1,7 +1,7 @@
 // Local frames in which lobes are evaluated, about a shading normal that is bent where necessary.
 #pragma once
 
-#include "transport/bsdf/scatter.h"
+#include "transport/bsdf/bsdf_sample.h"
 
 namespace bnvpl {
 

@@ -16,7 +16,7 @@ enum class Stream : uint32_t {
   Plot,
   AreaEstimate,
   LightTracer,
-  PrimaryPoints,
+  FilmPoints,
   VplPaths,
   TileLightSampler,
   SpatialLightSampler,  // light selection in vpl-render

@@ -82,8 +82,9 @@ size_t ConflictGraph::nearIn(uint32_t i, CellLists::Range range, Near* found) co
     const __m128 dz = _mm_sub_ps(_mm_loadu_ps(&z_[j]), z);
     const __m128 d2 =
         _mm_add_ps(_mm_add_ps(_mm_mul_ps(dx, dx), _mm_mul_ps(dy, dy)), _mm_mul_ps(dz, dz));
-    const __m128 reach = _mm_add_ps(_mm_loadu_ps(&radius_[j]), radius);
-    auto mask = static_cast<unsigned>(_mm_movemask_ps(_mm_cmplt_ps(d2, _mm_mul_ps(reach, reach))));
+    const __m128 maxDistance = _mm_add_ps(_mm_loadu_ps(&radius_[j]), radius);
+    auto mask = static_cast<unsigned>(
+        _mm_movemask_ps(_mm_cmplt_ps(d2, _mm_mul_ps(maxDistance, maxDistance))));
     if (range.end - j < kLanes) mask &= (1u << (range.end - j)) - 1u;
     alignas(16) float distances[kLanes];
     _mm_store_ps(distances, d2);
@@ -118,8 +119,8 @@ uint32_t ConflictGraph::heavierNeighbour(uint32_t i) const {
     for (uint32_t j = range.begin; j < range.end; ++j) {
       if (weight[j] < own || !outweighs(j, i)) continue;  // also skips removed nodes, and i itself
       const float x = x_[j] - x_[i], y = y_[j] - y_[i], z = z_[j] - z_[i];
-      const float reach = radius_[i] + radius_[j];
-      if (x * x + y * y + z * z < reach * reach && compatible(i, j)) return j;
+      const float maxDistance = radius_[i] + radius_[j];
+      if (x * x + y * y + z * z < maxDistance * maxDistance && compatible(i, j)) return j;
     }
   }
   return kNone;

@@ -13,15 +13,16 @@
 
 namespace bnvpl {
 
-// Weight of a pair at `distance` whose radii add up to `reach`: (1 - distance / reach)^alpha, and 0
-// from reach on (Yuksel 2015, section 3). Weight limiting gives pairs nearer than limit * reach the
-// weight of that distance; a limit of 0 turns it off.
+// Weight of a pair at `distance` whose radii add up to `maxDistance`, Yuksel's 2 r_max: (1 -
+// distance / maxDistance)^alpha, and 0 from there on (Yuksel 2015, section 3). Weight limiting
+// gives pairs nearer than limit * maxDistance the weight of that distance; a limit of 0 turns it
+// off.
 struct PairWeight {
   float alpha = 8.0f;
   float limit = 0.0f;
 
-  float operator()(float distance, float reach) const {
-    const float x = 1.0f - std::max(distance / reach, limit);
+  float operator()(float distance, float maxDistance) const {
+    const float x = 1.0f - std::max(distance / maxDistance, limit);
     if (!(x > 0.0f)) return 0.0f;
     if (alpha != 8.0f) return std::pow(x, alpha);
     const float x2 = x * x, x4 = x2 * x2;

@@ -80,7 +80,7 @@ std::vector<uint32_t> keepOf(const Sorted& of, size_t keep, size_t count, const 
 
 // Each step gives the result of the sequential greedy algorithm: remove the heaviest candidate
 // until no more than it keeps are left; of equal weights, the higher row goes first.
-Kept make(const EliminateInputs& in, const Values& options) {
+Kept run(const EliminateInputs& in, const Values& options) {
   const size_t count = options[kEliminateCountOption];
   Sorted left;
   left.row = mortonOrder(in.candidates.position);
@@ -114,6 +114,6 @@ extern const EliminateMethod method;
 const EliminateMethod method{
     "elimination",
     "blue noise: the candidates that are spread best, by weighted sample elimination", kOptions,
-    make};
+    run};
 
 }  // namespace bnvpl::methods::eliminate::elimination

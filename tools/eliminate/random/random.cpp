@@ -30,7 +30,7 @@ std::vector<uint32_t> randomRows(size_t candidates, size_t count, uint64_t seed)
   return rows;
 }
 
-Kept make(const EliminateInputs& in, const Values& options) {
+Kept run(const EliminateInputs& in, const Values& options) {
   const size_t count = options[kEliminateCountOption];
   const std::vector<uint32_t> order = mortonOrder(in.candidates.position);
   const CandidateRadii radii = candidateRadii(inOrder<Vec3>(in.candidates.position, order),
@@ -47,6 +47,6 @@ Kept make(const EliminateInputs& in, const Values& options) {
 }  // namespace
 
 extern const EliminateMethod method;
-const EliminateMethod method{"random", "a random subset, for comparison", kOptions, make};
+const EliminateMethod method{"random", "a random subset, for comparison", kOptions, run};
 
 }  // namespace bnvpl::methods::eliminate::random

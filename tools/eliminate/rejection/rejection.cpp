@@ -92,7 +92,7 @@ std::vector<double> probabilities(const std::vector<double>& brings, double coun
   return p;
 }
 
-Kept make(const EliminateInputs& in, const Values& options) {
+Kept run(const EliminateInputs& in, const Values& options) {
   const VplTable& all = in.candidates;
   const uint64_t key = streamKey(options[kSeedOption], Stream::Eliminate) + 1;
   const std::vector<SurfacePoint> points = cameraPoints(in, key, options[kCameraPointsOption]);
@@ -132,7 +132,7 @@ const EliminateMethod method{
     "rejection",
     "VPLs of vpl-place --method light, accepted by their contribution to the image; about -n",
     kOptions,
-    make,
+    run,
     VplStage::Lit,
     /*needsScene=*/true};
 

@@ -29,7 +29,7 @@ constexpr auto kIrradianceErrorOption = inTopic(
 constexpr auto kMaxBouncesOption = inTopic(
     Topic::Quality,
     wholeOption("max-bounces", "32", 1, 1000, "",
-                "diffuse bounces between a light and the view, including the one at the VPL"));
+                "bounces off rough surfaces between a light and the view, with that at the VPL"));
 constexpr auto kOptions =
     optionTable(kPhotonsOption, kEmissionOption, kIrradianceErrorOption, kPathsOption,
                 kRadiusOption, kMaxBouncesOption, kEmitPointsOption);
@@ -88,9 +88,9 @@ class Estimator {
         unitsToTry(in_.resume.trial, split.photons,
                    kPhotonsOfUnit * std::max(kMinUnits, in_.vpls.size() / kVplsOfUnit));
     const PhotonWork photons =
-        trace(kPhotonPhase, Stream::Photons, sent, split.share,
+        trace(kPhotonPhase, Stream::Photons, sent, split.photonWeight,
               static_cast<double>(split.photons) / static_cast<double>(sent));
-    const PathResult paths = gatherPaths(split);
+    const PathResult paths = traceSplitPaths(split);
     return combine(split, photons, paths);
   }
 
@@ -123,10 +123,10 @@ class Estimator {
     return phase < kPhotonPhase ? 0 : options_[kEmitPointsOption];
   }
 
-  PhotonWork trace(size_t phase, Stream stream, uint64_t count, std::span<const double> share = {},
-                   double times = 1.0) {
+  PhotonWork trace(size_t phase, Stream stream, uint64_t count,
+                   std::span<const double> emitPointWeights = {}, double times = 1.0) {
     PhotonWork work(in_, options_, count);
-    work.scatter.setShare(share);
+    work.scatter.setEmitPointWeights(emitPointWeights);
     const PhotonRun run{streamKey(options_[kSeedOption], stream),
                         emitPointsOf(phase),
                         maxBounces(),
@@ -146,26 +146,27 @@ class Estimator {
     return work;
   }
 
-  PathResult gather(size_t phase, Stream stream, std::span<const uint64_t> points,
-                    uint64_t equivalent, double times = 1.0) {
+  PathResult tracePaths(size_t phase, Stream stream, std::span<const uint64_t> points,
+                        uint64_t equivalent, double times = 1.0) {
     if (!spatialLights_) spatialLights_ = makeSpatialLightSampler(in_, options_[kSeedOption]);
-    const VplPaths gatherer(
+    const VplPaths vplPaths(
         in_, {streamKey(options_[kSeedOption], stream), options_[kPathsOption], maxBounces(),
               options_.real32(kRadiusOption), emitPointsOf(phase), spatialLights_.get()});
     return phases_.run(
         phase, times,
         [&](const Resume& resume) {
           uint64_t all = 0;
-          for (const uint64_t n : points) all += gatherer.pathsOf(n);
+          for (const uint64_t n : points) all += vplPaths.pathsOf(n);
           return withProgress(equivalent, all, [&](const ProgressFn& progress) {
-            return gatherAll({in_.vpls, in_.accel, in_.lights, progress, resume}, gatherer, points);
+            return tracePathsOfAll({in_.vpls, in_.accel, in_.lights, progress, resume}, vplPaths,
+                                   points);
           });
         },
         [](const PathResult& result) { return finishedState(result); });
   }
 
   // A cost trial takes fewer points, in proportion; the rounding remainder goes to the next VPL.
-  PathResult gatherPaths(const Split& split) {
+  PathResult traceSplitPaths(const Split& split) {
     std::vector<uint64_t> points = split.points;
     double all = 0.0, few = 0.0, left = 0.0;
     for (const uint64_t n : points) all += static_cast<double>(n);
@@ -177,8 +178,8 @@ class Estimator {
       left -= static_cast<double>(n);
       few += static_cast<double>(n);
     }
-    return gather(kPathPhase, Stream::VplPaths, points, work_ - reported_,
-                  few > 0.0 ? all / few : 1.0);
+    return tracePaths(kPathPhase, Stream::VplPaths, points, work_ - reported_,
+                      few > 0.0 ? all / few : 1.0);
   }
 
   // The error of --irradiance-error is relative to all light in view, of which VPLs give a share.
@@ -219,7 +220,7 @@ class Estimator {
     std::vector<uint64_t> pointsOf(in_.vpls.size(), 0);
     for (size_t i = 0; i < pointsOf.size(); i += step) pointsOf[i] = points;
     const std::vector<PathSums> some =
-        gather(1, Stream::PilotPaths, pointsOf, few, static_cast<double>(step)).sums;
+        tracePaths(1, Stream::PilotPaths, pointsOf, few, static_cast<double>(step)).sums;
     std::vector<PathSums> paths(some.size());
     for (size_t i = 0; i < paths.size(); ++i) paths[i] = some[i - i % step];
     pilots.points = static_cast<double>(points);
@@ -262,10 +263,10 @@ class Estimator {
     Split split = some;
     split.cost *= times;
     split.points.resize(count);
-    split.share.resize(count);
+    split.photonWeight.resize(count);
     for (size_t i = 0; i < count; ++i) {
       split.points[i] = some.points[i / step];
-      split.share[i] = some.share[i / step];
+      split.photonWeight[i] = some.photonWeight[i / step];
     }
     return split;
   }
@@ -275,7 +276,7 @@ class Estimator {
             std::vector<double>(in_.vpls.size(), 1.0)};
   }
 
-  // Flux of each VPL: share * photons + (1 - share) * paths, plus the light that only photons find.
+  // Flux of each VPL: w * photons + (1 - w) * paths, plus the light that only photons find.
   EstimateResult combine(const Split& split, const PhotonWork& photons,
                          const PathResult& paths) const {
     EstimateResult result{in_.vpls,
@@ -287,7 +288,7 @@ class Estimator {
     for (size_t i = 0; i < lit.size(); ++i) {
       const VplSum& s = photons.sums.vpl[i];
       const PathSums& r = paths.sums[i];
-      const double w = split.share[i], rest = 1.0 - w;
+      const double w = split.photonWeight[i], rest = 1.0 - w;
       double sum = 0.0;
       pathShare[i] = rest;
       for (size_t c = 0; c < 3; ++c) {
@@ -325,7 +326,7 @@ class Estimator {
   double progressScale_ = 1.0;    // photons of progress per photon traced, if less work is enough
 };
 
-EstimateResult make(const EstimateInputs& in, const Values& options) {
+EstimateResult run(const EstimateInputs& in, const Values& options) {
   return Estimator(in, options).run();
 }
 
@@ -335,6 +336,6 @@ Work work(const VplTable&, const Values& options) { return {"photons", options[k
 
 extern const EstimateMethod method;
 const EstimateMethod method{"both", "photons and paths, weighted by their variance at each VPL",
-                            kOptions, make, work};
+                            kOptions, run, work};
 
 }  // namespace bnvpl::methods::estimate::both

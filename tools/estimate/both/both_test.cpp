@@ -5,7 +5,7 @@
 
 #include "tests/support/pipeline.h"
 #include "tests/transport/plain_scene.h"
-#include "tools/estimate/both/receivers.h"
+#include "tools/estimate/both/irradiance_probes.h"
 #include "tools/estimate/both/split.h"
 
 namespace bnvpl::test {
@@ -193,14 +193,14 @@ TEST(Both, EndsWhereFluxesAreKnownWellEnough) {
   const auto run = [&](const char* error) {
     return lightVpls(world, vpls, {{"photons", "3M"}, {"irradiance-error", error}});
   };
-  const Receivers receivers(vpls, world.accel);
+  const IrradianceProbes probes(vpls, world.accel);
   const auto errorOf = [&](const VplTable& lit) {
     std::vector<double> flux, variance;
     for (size_t i = 0; i < lit.size(); ++i) {
       flux.push_back(double{mean(lit.flux[i])});
       variance.push_back(std::pow(double{lit.relativeError[i]} * flux.back(), 2));
     }
-    return receivers.relativeError(flux, variance);
+    return probes.relativeError(flux, variance);
   };
   const EstimateResult all = run("0"), some = run("0.004"), few = run("0.008");
   const double best = errorOf(all.table);
@@ -227,11 +227,11 @@ TEST(Both, WorksLessWhereLessOfTheLightIsIndirect) {
   EXPECT_NEAR(totalFlux(half.table) / totalFlux(all.table), 1.0, 0.02);
 }
 
-// The error stated by the receivers matches the deviation of irradiances between seeds.
-TEST(Both, ReceiversStateTheErrorOfIrradiance) {
+// The error stated by the probes matches the deviation of irradiances between seeds.
+TEST(Both, ProbesStateTheErrorOfIrradiance) {
   const World world("cornell/scene.toml");
   const VplTable vpls = keptVpls(world, {{"count", "300"}}, {{"count", "6k"}});
-  const Receivers receivers(vpls, world.accel);
+  const IrradianceProbes probes(vpls, world.accel);
   constexpr int kRuns = 12;
   std::vector<VplTable> runs;
   for (int run = 1; run <= kRuns; ++run)
@@ -247,13 +247,13 @@ TEST(Both, ReceiversStateTheErrorOfIrradiance) {
   for (const VplTable& r : runs)
     for (size_t i = 0; i < vpls.size(); ++i)
       found[i] += std::pow(double{mean(r.flux[i])} - flux[i], 2) / (kRuns - 1);
-  const double error = receivers.relativeError(flux, stated);
+  const double error = probes.relativeError(flux, stated);
   EXPECT_GT(error, 0.005);
   EXPECT_LT(error, 0.2);
-  EXPECT_NEAR(receivers.relativeError(flux, found) / error, 1.0, 0.15);
+  EXPECT_NEAR(probes.relativeError(flux, found) / error, 1.0, 0.15);
   // A hundred times the variance is ten times the error.
   for (double& v : stated) v *= 100.0;
-  EXPECT_NEAR(receivers.relativeError(flux, stated) / error, 10.0, 1.5);
+  EXPECT_NEAR(probes.relativeError(flux, stated) / error, 10.0, 1.5);
 }
 
 // Estimate of a pilot that found few samples, one in twenty of which is twenty times as bright.
@@ -290,7 +290,7 @@ TEST(Both, WeightsAreNotLedByFewSamplesOfThePilots) {
   const Split split = splitWork(vpls, world.accel, pilots, {kTimes * kVpls, 0.0});
   double result = 0.0;
   for (size_t i = 0; i < kVpls; ++i) {
-    const double w = split.share[i], points = std::max(1e-3, double(split.points[i]));
+    const double w = split.photonWeight[i], points = std::max(1e-3, double(split.points[i]));
     result += variance * (w * w * kVpls / double(split.photons) + (1.0 - w) * (1.0 - w) / points);
   }
   EXPECT_LT(result / kVpls / (variance / kTimes), 1.5);

@@ -7,7 +7,7 @@
 #include "core/parallel.h"
 #include "spatial/compatible_surface.h"
 #include "spatial/kd_tree.h"
-#include "tools/estimate/both/receivers.h"
+#include "tools/estimate/both/irradiance_probes.h"
 
 namespace bnvpl::methods::estimate::both {
 
@@ -178,16 +178,16 @@ class PointAllocation {
     for (size_t i = 0; i < vpls_.size(); ++i) sum += weight_[i] * variance(i, photons, lambda);
     return sum;
   }
-  double relativeErrorAt(double photons, double lambda, const Receivers& receivers) const {
+  double relativeErrorAt(double photons, double lambda, const IrradianceProbes& probes) const {
     std::vector<double> flux, variances;
     for (size_t i = 0; i < vpls_.size(); ++i) {
       flux.push_back(vpls_[i].flux);
       variances.push_back(variance(i, photons, lambda));
     }
-    return receivers.relativeError(flux, variances);
+    return probes.relativeError(flux, variances);
   }
   // Weight of photons in the flux of VPL i, by inverse variance.
-  double share(size_t i, double photons, double points) const {
+  double photonWeight(size_t i, double photons, double points) const {
     const VplStatistics& v = vpls_[i];
     if (!(points > 0.0)) return 1.0;
     return photons * v.pointVariance / (photons * v.pointVariance + points * v.photonVariance);
@@ -226,12 +226,12 @@ Allocation smallestAllocation(const PointAllocation& points, const VplTable& vpl
                               const Accelerator& accel, double photonCost, const Budget& budget) {
   Allocation best = bestAllocation(points, photonCost, budget.cost);
   if (!(budget.error > 0.0)) return best;
-  const Receivers receivers(vpls, accel);
+  const IrradianceProbes probes(vpls, accel);
   double cost = budget.cost;
   for (int step = 0; step < kSteps; ++step) {
     cost *= kStep;
     const Allocation less = bestAllocation(points, photonCost, cost);
-    if (!(points.relativeErrorAt(less.photons, less.lambda, receivers) <= budget.error)) break;
+    if (!(points.relativeErrorAt(less.photons, less.lambda, probes) <= budget.error)) break;
     best = less;
   }
   return best;
@@ -246,13 +246,13 @@ Split splitWork(const VplTable& vpls, const Accelerator& accel, const Pilots& pi
   Split split;
   split.photons = std::max<uint64_t>(1, static_cast<uint64_t>(std::llround(best.photons)));
   split.points.resize(vpls.size());
-  split.share.resize(vpls.size());
+  split.photonWeight.resize(vpls.size());
   const auto photons = static_cast<double>(split.photons);
   split.cost = photons * pilots.photonCost + points.costAt(photons, best.lambda);
   split.costShare = std::min(1.0, split.cost / budget.cost);
   for (size_t i = 0; i < vpls.size(); ++i) {
     split.points[i] = static_cast<uint64_t>(std::llround(points.at(i, photons, best.lambda)));
-    split.share[i] = points.share(i, photons, static_cast<double>(split.points[i]));
+    split.photonWeight[i] = points.photonWeight(i, photons, static_cast<double>(split.points[i]));
   }
   return split;
 }

@@ -27,14 +27,14 @@ struct Pilots {
 struct Split {
   uint64_t photons = 0;
   std::vector<uint64_t> points;  // one per VPL
-  std::vector<double> share;     // one per VPL: weight of photons in its flux, 0 to 1
+  std::vector<double> photonWeight;  // one per VPL: of photons in its flux, 0 to 1
   double cost = 0.0;             // cost of photons and points
   double costShare = 1.0;        // cost over that of the budget
 };
 
 struct Budget {
   double cost = 0.0;   // maximal cost
-  double error = 0.0;  // sufficient Receivers::relativeError(); 0: spend the whole cost
+  double error = 0.0;  // sufficient IrradianceProbes::relativeError(); 0: spend the whole cost
 };
 
 // Divides the budget such that the sum over VPLs of variance over local flux is minimal. Spends

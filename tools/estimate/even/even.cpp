@@ -16,7 +16,7 @@ void scatterHit(const PhotonScatter& scatter, const PhotonHit& hit, Rng&, Photon
   scatter.tally(sums, kDeposited, hit.flux);
 }
 
-EstimateResult make(const EstimateInputs& in, const Values& options) {
+EstimateResult run(const EstimateInputs& in, const Values& options) {
   return estimateByPhotons(in, options, scatterHit);
 }
 
@@ -25,6 +25,6 @@ EstimateResult make(const EstimateInputs& in, const Values& options) {
 extern const EstimateMethod method;
 const EstimateMethod method{
     "even", "photons, divided evenly among all VPLs in reach (thesis); leaks through thin walls",
-    kPhotonOptions, make, photonWork};
+    kPhotonOptions, run, photonWork};
 
 }  // namespace bnvpl::methods::estimate::even

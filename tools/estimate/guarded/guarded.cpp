@@ -5,7 +5,7 @@ namespace bnvpl::methods::estimate::guarded {
 
 namespace {
 
-EstimateResult make(const EstimateInputs& in, const Values& options) {
+EstimateResult run(const EstimateInputs& in, const Values& options) {
   return estimateByPhotons(in, options, scatterToOneInSight);
 }
 
@@ -14,6 +14,6 @@ EstimateResult make(const EstimateInputs& in, const Values& options) {
 extern const EstimateMethod method;
 const EstimateMethod method{"guarded",
                             "photons, to VPLs on compatible surfaces that the hit can see",
-                            kPhotonOptions, make, photonWork};
+                            kPhotonOptions, run, photonWork};
 
 }  // namespace bnvpl::methods::estimate::guarded

@@ -17,18 +17,18 @@ constexpr auto kPointsOption =
 constexpr auto kMaxBouncesOption = inTopic(
     Topic::Quality,
     wholeOption("max-bounces", "32", 1, 1000, "",
-                "diffuse bounces between a light and the view, including the one at the VPL"));
+                "bounces off rough surfaces between a light and the view, with that at the VPL"));
 constexpr auto kOptions =
     optionTable(kPointsOption, kPathsOption, kRadiusOption, kMaxBouncesOption, kEmitPointsOption);
 
-EstimateResult make(const EstimateInputs& in, const Values& options) {
+EstimateResult run(const EstimateInputs& in, const Values& options) {
   in.lights.requirePower();
   const auto spatialLights = makeSpatialLightSampler(in, options[kSeedOption]);
   // A cost trial (--estimate) takes fewer points and paths.
   CostTrial* const trial = in.resume.trial;
   const uint64_t each = options[kPointsOption], fewPoints = unitsToTry(trial, each, 8),
                  paths = options[kPathsOption], fewPaths = unitsToTry(trial, paths, 8);
-  const VplPaths gatherer(
+  const VplPaths vplPaths(
       in, {streamKey(options[kSeedOption], Stream::VplPaths), fewPaths,
            static_cast<unsigned>(options[kMaxBouncesOption]), options.real32(kRadiusOption),
            options[kEmitPointsOption], spatialLights.get()});
@@ -37,7 +37,7 @@ EstimateResult make(const EstimateInputs& in, const Values& options) {
   resume.times = static_cast<double>(each) * static_cast<double>(paths) /
                  static_cast<double>(fewPoints * fewPaths);
   const PathResult received =
-      gatherAll({in.vpls, in.accel, in.lights, in.progress, resume}, gatherer, points);
+      tracePathsOfAll({in.vpls, in.accel, in.lights, in.progress, resume}, vplPaths, points);
   EstimateResult result{in.vpls, {}, 0};
   VplTable& lit = result.table;
   beginLit(lit, options.real32(kRadiusOption));
@@ -52,7 +52,7 @@ EstimateResult make(const EstimateInputs& in, const Values& options) {
     result.paths += r.paths;
     result.energy.nonFinite += r.nonFinite;
   }
-  VplGroups groups(lit.size(), gatherer.groups());
+  VplGroups groups(lit.size(), vplPaths.groups());
   addGroupsTo(groups, received);
   finishGroups(std::move(groups), lit);
   received.points.fill(lit);
@@ -67,6 +67,6 @@ Work work(const VplTable& vpls, const Values& options) {
 
 extern const EstimateMethod method;
 const EstimateMethod method{"paths", "paths from the surface of each VPL back to the lights",
-                            kOptions, make, work};
+                            kOptions, run, work};
 
 }  // namespace bnvpl::methods::estimate::paths

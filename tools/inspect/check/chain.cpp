@@ -129,7 +129,7 @@ std::string brokenRows(const CheckedFile& earlier, const CheckedFile& later) {
     if (same && !kept) {
       for (size_t k = row * to.emitPoints; k < (row + 1) * to.emitPoints; ++k)
         same = same && double{length(to.emitPosition[k] - to.position[row])} <=
-                           to.reach * double{to.radius[row]};
+                           to.reachFactor * double{to.radius[row]};
     }
     if (!same)
       return "row " + std::to_string(row) + " (id " + std::to_string(to.id[row]) +

@@ -34,7 +34,7 @@ Vec3 shadeRay(const Accelerator& accel, Vec3 origin, Vec3 direction, Rng& rng) {
     }
     BsdfSample sample;
     Ray next;
-    if (!scatter(accel, bsdf, LobeGroup::Specular, Transport::Radiance, rng, sample, next))
+    if (!sampleNextRay(accel, bsdf, LobeGroup::Specular, Transport::Radiance, rng, sample, next))
       return {};
     weight = weight * sample.weight;
     origin = next.origin;

@@ -1,4 +1,5 @@
-// Candidates where camera paths hit after their first diffuse bounce (the thesis, section 3.2).
+// Candidates where camera paths hit after their first bounce off a rough surface (the thesis,
+// section 3.2, whose surfaces are diffuse).
 #include "transport/camera.h"
 
 #include <array>
@@ -11,11 +12,11 @@ namespace bnvpl::methods::place::camera {
 
 namespace {
 
-constexpr auto kDepthOption = inTopic(
-    Topic::Quality,
-    wholeOption("depth", "2", 2, 1000, "",
-                "diffuse vertices of a path; the first is never a candidate, the second lights the "
-                "view directly"));
+constexpr auto kDepthOption =
+    inTopic(Topic::Quality, wholeOption("depth", "2", 2, 1000, "",
+                                        "rough (diffuse or glossy) vertices of a path; the first "
+                                        "is never a candidate, the second lights the "
+                                        "view directly"));
 constexpr auto kOptions = optionTable(kDepthOption);
 
 // State of a camera path that is being traced.
@@ -51,7 +52,7 @@ class CameraPath {
     }
     BsdfSample sample;
     if ((lobes.specular() && ++specular_ > kMaxSpecular) ||
-        !scatter(accel, bsdf, lobes.group, Transport::Radiance, rng_, sample, next_)) {
+        !sampleNextRay(accel, bsdf, lobes.group, Transport::Radiance, rng_, sample, next_)) {
       ++chunk.absorbed;
       return false;
     }

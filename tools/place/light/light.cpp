@@ -11,7 +11,7 @@ namespace bnvpl::methods::place::light {
 namespace {
 
 constexpr auto kLightDepthOption =
-    wholeOption("light-depth", "32", 1, 1000, "", "diffuse hits of a photon");
+    wholeOption("light-depth", "32", 1, 1000, "", "hits of a photon on rough surfaces");
 constexpr auto kOptions = optionTable(kLightDepthOption);
 
 void tracePhotonPath(const Accelerator& accel, const LightSet& lights, unsigned depth,

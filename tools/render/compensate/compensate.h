@@ -28,6 +28,7 @@ struct UncoveredShare {
 
   float at(float distance) const {
     if (!(distance < within)) return 0.0f;
+    if (clampRadius == INFINITY) return 1.0f;
     return withKind(kind, [&](auto k) { return k.removed(distance / clampRadius); });
   }
 };
@@ -49,7 +50,7 @@ struct Uncovered {
 struct VertexLights {
   const LightSet& lights;
   const SpatialLightSampler* spatial;  // distribution of shadow rays; null: by power
-  GatherPoint vpls;
+  PointGatherFn vpls;
 };
 // Adds light to all receivers of a tile at once. The results have the light and the method's own
 // counts; `cut` counts transfers. Returns the number of rays besides the shadow rays.

@@ -23,14 +23,11 @@ class CellGrid {
   // Cells of the given side; larger ones where there would be more than `kMaxCells`.
   CellGrid(const Bounds& box, float side) : lower_(box.lower), side_(side) {
     const Vec3 extent = box.extent();
-    const auto cells = [&] {
-      double product = 1.0;
-      for (size_t a = 0; a < 3; ++a) product *= std::floor(double{extent[a] / side_}) + 1.0;
-      return product;
+    const auto along = [&](size_t a) {
+      return std::max(1.0, std::ceil(double{extent[a] / side_}));
     };
-    while (cells() > kMaxCells) side_ *= 1.25f;
-    for (size_t a = 0; a < 3; ++a)
-      size_[a] = static_cast<uint32_t>(std::floor(extent[a] / side_)) + 1;
+    while (along(0) * along(1) * along(2) > kMaxCells) side_ *= 1.25f;
+    for (size_t a = 0; a < 3; ++a) size_[a] = static_cast<uint32_t>(along(a));
   }
   size_t count() const { return size_t{size_[0]} * size_[1] * size_[2]; }
   float side() const { return side_; }

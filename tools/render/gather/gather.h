@@ -49,22 +49,22 @@ struct TileReceivers : TileLayout {
 
 // One result for each receiver, or of methods with `pixelSum` the weighted sum of each pixel, in
 // place of its first sample.
-using GatherTile = std::function<void(const TileReceivers&, std::span<Gathered>)>;
+using TileGatherFn = std::function<void(const TileReceivers&, std::span<Gathered>)>;
 // Light of the VPLs at a vertex of a random path: an unbiased estimate with `draws` (> 0) VPLs. The
 // sink receives its radiance by light group.
-using GatherPoint = std::function<Gathered(const Bsdf&, unsigned draws, Rng&, const GroupSink&)>;
+using PointGatherFn = std::function<Gathered(const Bsdf&, unsigned draws, Rng&, const GroupSink&)>;
 
 // Immutable and thread-safe.
 struct Gather {
-  GatherTile tile;
-  GatherPoint point = {};    // empty: PointGather (gather/point_gather.h)
+  TileGatherFn tile;
+  PointGatherFn point = {};  // empty: PointGather (gather/point_gather.h)
   bool wholePixels = false;  // every call needs all samples of its pixels
   std::vector<PlanCount> planned = {};  // what the method counted while it prepared the film
 };
 
 // The shading point of each pixel, row by row; its triangle is kNone where there is none.
 // `emission`: emission that the camera path hits before, mean of the channels, W/(m2 sr).
-struct PrimaryPoints {
+struct FilmPoints {
   uint32_t width = 0, height = 0;
   std::vector<SurfacePoint> points;
   std::vector<float> emission;
@@ -78,7 +78,7 @@ struct GatherInputs {
   const VplLights& vpls;
   const LightTree& tree;  // empty if there are no VPLs
   uint64_t seed;
-  std::function<PrimaryPoints()> primaryPoints;  // traces the film's points when it is called
+  std::function<FilmPoints()> filmPoints;        // traces the film's points when it is called
   const ProgressFn& progress;                    // reports preparations
 };
 

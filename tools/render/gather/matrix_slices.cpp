@@ -92,7 +92,7 @@ size_t SlicePlan::sliceOf(const SurfacePoint& point) const {
 
 SlicePlan makeSlicePlan(const GatherInputs& in, const Values& options) {
   SlicePlan plan;
-  std::vector<SurfacePoint> film = in.primaryPoints().points;
+  std::vector<SurfacePoint> film = in.filmPoints().points;
   std::erase_if(film, [](const SurfacePoint& p) { return p.triangle == kNone; });
   if (film.empty()) return plan;
   Bounds seen;

@@ -14,6 +14,7 @@ Gathered PointGather::operator()(const Bsdf& bsdf, unsigned draws, Rng& rng,
     VplTransfer c;
     if (!draw || !unoccludedTransfer(vpls_, draw->vpl, bsdf, c)) continue;
     ++out.shadowRays;
+    out.sampledPairs += c.sampled;
     if (accel_.occluded(from, vpls_.position[draw->vpl])) continue;
     const float weight = perDraw / draw->probability;
     const Vec3 light = c.transfer * vpls_.intensity[draw->vpl] * weight;

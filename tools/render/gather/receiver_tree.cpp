@@ -78,12 +78,12 @@ float pairBound(const LightNode& light, const ReceiverNode& node, const Bsdf* on
   const Bounds toReceiver{-toLight.upper, -toLight.lower};
   const float cosine = maxCosine(toReceiver, Vec3{}, light.frame);
   const float emitted = withKind(light.kind, [&](auto k) {
-    return k.mostEmitted(cosine, light.cosHalfAngle, light.sinHalfAngle);
+    return k.maxEmitted(cosine, light.cosHalfAngle, light.sinHalfAngle);
   });
   if (emitted <= 0.0f) return 0.0f;
   const float received =
-      LambertEmission::mostEmitted(maxCosine(toLight, Vec3{}, node.frame),
-                                   node.normals.cosHalfAngle, node.normals.sinHalfAngle());
+      LambertEmission::maxEmitted(maxCosine(toLight, Vec3{}, node.frame), node.normals.cosHalfAngle,
+                                  node.normals.sinHalfAngle());
   if (received <= 0.0f) return 0.0f;
   const Vec3 value =
       only ? only->roughUpperBound(

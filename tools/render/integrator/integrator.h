@@ -76,12 +76,13 @@ inline bool gathersPixelSums(const Values& options) {
   return gather && gather->pixelSum;
 }
 
+// `make` returns an Integrator (film/integrator_interface.h).
 struct IntegratorMethod {
   std::string_view name, summary;
   std::span<const Option> options;
   Integrator (*make)(const IntegratorInputs&, const Values&);
   bool needsVpls = false;
-  bool photons = false;  // traces photons for indirect light
+  bool photons = false;  // sets Integrator::tracePhotons; photons traced by `make` do not count
   bool gathers = false;  // gathers VPLs, so that --gather and --compensate apply
 };
 // Defined in the build folder by cmake/Methods.cmake, from the folders beside this file.

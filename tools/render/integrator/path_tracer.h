@@ -8,7 +8,7 @@ namespace bnvpl {
 inline constexpr WholeOption kMaxBouncesOption =
     neededBy({Condition{"only", "all|indirect"}},
              wholeOption("max-bounces", "32", 0, 1000, "",
-                         "diffuse bounces after the first surface, as vpl-estimate's"));
+                         "bounces off rough surfaces after the first, as vpl-estimate's"));
 inline unsigned maxBouncesOf(const Values& options) {  // none counts for direct light
   return options.has(kMaxBouncesOption) ? static_cast<unsigned>(options[kMaxBouncesOption]) : 0;
 }

@@ -6,7 +6,7 @@
 namespace bnvpl {
 
 void addDirectLight(const IntegratorInputs& in, const Values& options, const FilmRays& filmRays,
-                    const PrimaryPoints& film, unsigned lightRays, TileParts& out) {
+                    const FilmPoints& filmPoints, unsigned lightRays, TileParts& out) {
   if (in.only == Only::Indirect) return;
   if (lightRays > 0) {
     const uint64_t raysOfTile = uint64_t{kTileSide} * kTileSide * options[kSppOption] * lightRays;
@@ -15,7 +15,7 @@ void addDirectLight(const IntegratorInputs& in, const Values& options, const Fil
         in.accel, in.lights, [filmRays](size_t pixel) { return filmRays.point(pixel); }, raysOfTile,
         in.seed, in.trial);
     out.visibleEmission =
-        std::make_unique<const VisibleEmission>(in.accel, in.lights, in.filter, film);
+        std::make_unique<const VisibleEmission>(in.accel, in.lights, in.filter, filmPoints);
   }
   if (options[kDirectSamplesOption] == 1) return;
   out.directSamples.emplace(in.accel, in.lights, in.filter, out.visibleEmission.get(),
@@ -37,9 +37,9 @@ std::unique_ptr<const Caustics> makeCaustics(const IntegratorInputs& in, uint64_
                                           in.groups, in.progress);
 }
 
-ControlVariateFn makeControlVariate(const IntegratorInputs& in, const PrimaryPoints& film) {
-  const auto control = std::make_shared<const PixelControlVariate>(in.accel, in.lights, in.filter,
-                                                                   film, in.lit, in.litGroups);
+ControlVariateFn makeControlVariate(const IntegratorInputs& in, const FilmPoints& filmPoints) {
+  const auto control = std::make_shared<const PixelControlVariate>(
+      in.accel, in.lights, in.filter, filmPoints, in.lit, in.litGroups);
   return [control](const TileSamples& tile, std::span<const SpecularPath> paths) {
     control->apply(tile, paths);
   };

@@ -34,11 +34,11 @@ inline constexpr OptionKey<bool> kAllocateKey = allocateOption({}).key();
 // Adds the parts for direct light, with `lightRays` shadow rays from each sample. Adds nothing if
 // the image shows only indirect light.
 void addDirectLight(const IntegratorInputs& in, const Values& options, const FilmRays& filmRays,
-                    const PrimaryPoints& film, unsigned lightRays, TileParts& out);
+                    const FilmPoints& filmPoints, unsigned lightRays, TileParts& out);
 // Returns null if the scene cannot have caustics. `bounces`: see Caustics.
 std::unique_ptr<const Caustics> makeCaustics(const IntegratorInputs& in, uint64_t photons,
                                              uint64_t raysOfPixel, unsigned bounces);
-ControlVariateFn makeControlVariate(const IntegratorInputs& in, const PrimaryPoints& film);
+ControlVariateFn makeControlVariate(const IntegratorInputs& in, const FilmPoints& filmPoints);
 // Runs the pilot of --allocate.
 SampleAllocation allocationOf(const IntegratorInputs& in, const Values& options,
                               const TileIntegrator& integrator);

@@ -30,19 +30,19 @@ namespace {
 
 // Upper bound of the emission of the cluster's VPLs from anywhere in the box towards `at`, relative
 // to their intensity.
-float mostEmitted(const LightNode& n, Vec3 at) {
+float maxEmitted(const LightNode& n, Vec3 at) {
   // The directions from the box to `at` are those from `at` to the box mirrored at `at`.
   const Bounds mirrored{2.0f * at - n.bounds.upper, 2.0f * at - n.bounds.lower};
   const float cosine = maxCosine(mirrored, at, n.frame);
   return withKind(n.kind,
-                  [&](auto k) { return k.mostEmitted(cosine, n.cosHalfAngle, n.sinHalfAngle); });
+                  [&](auto k) { return k.maxEmitted(cosine, n.cosHalfAngle, n.sinHalfAngle); });
 }
 
 }  // namespace
 
 float sentBound(const LightNode& n, const ClusterReceiver& receiver) {
   const Vec3 at = receiver.bsdf.point().position;
-  const float emitter = mostEmitted(n, at);
+  const float emitter = maxEmitted(n, at);
   if (emitter <= 0.0f) return 0.0f;
   const Vec3 value = receiver.bsdf.roughUpperBound(
       maxCosine(n.bounds, at, receiver.normal),

@@ -33,8 +33,8 @@ struct ClusterDeviation {
 };
 
 // The deviation of an inner node's light at a point. Distances are taken to the centre of the
-// cluster's box, which is cheaper than a bound. Cosines are the largest over the box, so the result
-// is 0 only if no light can arrive.
+// cluster's box, which is cheaper than a bound. Cosines are about the largest over the box, with
+// the same zeros: the result is 0 only if no light can arrive.
 template <typename Kind>
 class DeviationModel {
  public:
@@ -45,6 +45,7 @@ class DeviationModel {
         axis_(n.axis),
         intensity_(n.intensity),
         size_(length(n.bounds.upper - n.bounds.lower)),
+        spread_(length(n.centres().extent())),
         closest2_(larger(0.25f * size_ * size_, std::numeric_limits<float>::min())),
         clamp2_(n.clamp2),
         sinHalfAngle_(n.sinHalfAngle),
@@ -59,19 +60,19 @@ class DeviationModel {
     const float receiver = dot(normal, d) * perDistance + 0.5f * angle;
     const float emitter =
         Kind::expectedEmitted(-(dot(axis_, d) * perDistance), 0.5f * angle, sinHalfAngle_);
-    const float deviation = kSizeSpread * angle + normalSpread_;
+    const float deviation = kSizeSpread * (spread_ * perDistance) + normalSpread_;
     const float sent = dot(reflected, intensity_) * clamp01(receiver) * clamp01(emitter);
     const float x = larger(larger(lower_.x - point.x, point.x - upper_.x), 0.0f);
     const float y = larger(larger(lower_.y - point.y, point.y - upper_.y), 0.0f);
     const float z = larger(larger(lower_.z - point.z, point.z - upper_.z), 0.0f);
     return {clamp01(deviation) * sent / Kind::boundedDistance2(distance2, clamp2_),
-            sent / leastDistance2<Kind>(x * x + y * y + z * z, clamp2_)};
+            sent / minDistance2<Kind>(x * x + y * y + z * z, clamp2_)};
   }
 
  private:
   static float clamp01(float a) { return larger(a < 1.0f ? a : 1.0f, 0.0f); }
   Vec3 lower_, upper_, middle_, axis_, intensity_;
-  float size_, closest2_, clamp2_, sinHalfAngle_, normalSpread_;
+  float size_, spread_, closest2_, clamp2_, sinHalfAngle_, normalSpread_;
 };
 
 // Whether the cluster's light is at most `allowed` at all receivers within the bounds, whose BSDFs

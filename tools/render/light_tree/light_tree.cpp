@@ -68,6 +68,7 @@ class Builder {
   LightNode leafOf(uint32_t i) const {
     LightNode n;
     n.bounds = vpls_.box(i);
+    n.reach = n.bounds.upper.x - vpls_.position[i].x;
     n.axis = vpls_.normal[i];
     n.frame = AxisFrame(n.axis);
     n.intensity = vpls_.intensity[i];
@@ -90,6 +91,7 @@ class Builder {
     n.intensity = a.intensity + b.intensity;
     n.kind = a.kind;
     n.clamp2 = std::min(a.clamp2, b.clamp2);
+    n.reach = std::min(a.reach, b.reach);
     const float share = mean(a.intensity) / mean(n.intensity);
     n.representative =
         toUnitFloat(random64(key_, index, 0)) < share ? a.representative : b.representative;

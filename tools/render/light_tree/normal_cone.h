@@ -18,22 +18,23 @@ struct NormalCone {
   }
 };
 
-// Smallest cone that contains both cones.
+// Smallest cone that contains both cones, slightly wider despite rounding. The angle between the
+// axes comes from atan2, as acos tells equal axes apart where their cosine rounds to less than 1.
 inline NormalCone merged(const NormalCone& a, const NormalCone& b) {
-  const float ta = std::acos(a.cosHalfAngle), tb = std::acos(b.cosHalfAngle);
-  const float between = std::acos(std::clamp(dot(a.axis, b.axis), -1.0f, 1.0f));
-  const NormalCone& wide = ta >= tb ? a : b;
-  const float wideAngle = std::max(ta, tb), narrowAngle = std::min(ta, tb);
-  if (between + narrowAngle <= wideAngle) return wide;
-  constexpr float kStraight = 3.14159265f;
-  const float angle = 0.5f * (ta + tb + between);
-  const Vec3& other = ta >= tb ? b.axis : a.axis;
-  const Vec3 sideways = other - wide.axis * dot(wide.axis, other);
-  if (angle >= kStraight || lengthSquared(sideways) < 1e-10f) return {wide.axis, -1.0f};
+  constexpr float kStraight = 3.14159265f, kMargin = 1e-3f;
+  constexpr float kAlike = 1e-6f;  // axes that differ by rounding
+  const NormalCone &wide = a.cosHalfAngle <= b.cosHalfAngle ? a : b, &narrow = &wide == &a ? b : a;
+  const float wideAngle = std::acos(wide.cosHalfAngle),
+              narrowAngle = std::acos(narrow.cosHalfAngle);
+  const float cosine = dot(wide.axis, narrow.axis);
+  const Vec3 sideways = narrow.axis - wide.axis * cosine;
+  const float between = std::atan2(length(sideways), cosine);
+  if (between + narrowAngle <= wideAngle + kAlike) return wide;
+  const float angle = 0.5f * (wideAngle + narrowAngle + between);
+  if (angle >= kStraight || between > kStraight - kAlike) return {wide.axis, -1.0f};
   const float turn = angle - wideAngle;
-  // Slightly wider than exact, so that it stays a bound despite rounding.
   return {normalize(wide.axis * std::cos(turn) + normalize(sideways) * std::sin(turn)),
-          std::cos(std::min(kStraight, angle + 1e-3f))};
+          std::cos(std::min(kStraight, angle + kMargin))};
 }
 
 }  // namespace bnvpl

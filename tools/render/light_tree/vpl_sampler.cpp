@@ -38,23 +38,23 @@ VplSampler::VplSampler(const LightTree& tree) {
   if (tree.nodes.empty()) return;
   kind_ = tree.nodes.front().kind;
   const std::span<const uint32_t> cut = tree.startCut;
-  startFours_ = (cut.size() + 3) / 4;
-  fours_.reserve(startFours_ + tree.nodes.size() / 3);
-  fours_.resize(startFours_);
-  for (size_t f = 0; f < startFours_; ++f) {
+  startNodes_ = (cut.size() + 3) / 4;
+  nodes_.reserve(startNodes_ + tree.nodes.size() / 3);
+  nodes_.resize(startNodes_);
+  for (size_t f = 0; f < startNodes_; ++f) {
     fill(tree, cut.subspan(4 * f, std::min<size_t>(4, cut.size() - 4 * f)), f);
   }
 }
 
 uint32_t VplSampler::add(const LightTree& tree, std::span<const uint32_t> nodes) {
-  const auto four = static_cast<uint32_t>(fours_.size());
-  fours_.emplace_back();
-  fill(tree, nodes, four);
-  return four;
+  const auto node = static_cast<uint32_t>(nodes_.size());
+  nodes_.emplace_back();
+  fill(tree, nodes, node);
+  return node;
 }
 
-void VplSampler::fill(const LightTree& tree, std::span<const uint32_t> nodes, size_t four) {
-  Four f;
+void VplSampler::fill(const LightTree& tree, std::span<const uint32_t> nodes, size_t node) {
+  Node4 f;
   for (size_t lane = 0; lane < nodes.size(); ++lane) {
     const LightNode& n = tree.nodes[nodes[lane]];
     const Vec3 center = n.bounds.center();
@@ -81,7 +81,7 @@ void VplSampler::fill(const LightTree& tree, std::span<const uint32_t> nodes, si
     }
     f.child[lane] = add(tree, std::span(below).first(count));
   }
-  fours_[four] = f;
+  nodes_[node] = f;
 }
 
 VplSampler::Point::Point(const VplSampler& sampler, const Bsdf& bsdf)
@@ -91,18 +91,18 @@ VplSampler::Point::Point(const VplSampler& sampler, const Bsdf& bsdf)
       normal_(bsdf.point().ns),
       value_(bsdf.diffuseValue()),
       diffuse_(bsdf.diffuseOnly()) {
-  for (uint32_t f = 0; f < sampler.startFours_; ++f) {
+  for (uint32_t f = 0; f < sampler.startNodes_; ++f) {
     for (const float weight : likely(f)) upTo_[starts_++] = whole_ += weight;
   }
 }
 
-VplSampler::Lanes VplSampler::Point::likely(uint32_t four) const {
-  return withKind(sampler_.kind_, [&](auto kind) { return likelyOf<decltype(kind)>(four); });
+VplSampler::Lanes VplSampler::Point::likely(uint32_t node) const {
+  return withKind(sampler_.kind_, [&](auto kind) { return likelyOf<decltype(kind)>(node); });
 }
 
 template <typename Kind>
-VplSampler::Lanes VplSampler::Point::likelyOf(uint32_t four) const {
-  const Four& f = sampler_.fours_[four];
+VplSampler::Lanes VplSampler::Point::likelyOf(uint32_t node) const {
+  const Node4& f = sampler_.nodes_[node];
   const __m128 x = load(f.x) - all(at_.x), y = load(f.y) - all(at_.y), z = load(f.z) - all(at_.z);
   const __m128 d2 = x * x + y * y + z * z, radius2 = load(f.radius2);
   const __m128 inverse = all(1.0f) / _mm_sqrt_ps(d2);  // infinite only inside
@@ -116,7 +116,7 @@ VplSampler::Lanes VplSampler::Point::likelyOf(uint32_t four) const {
   // Emission leaves in the opposite directions, so the axes are negated instead.
   const __m128 back = to.most(zero - load(f.ax), zero - load(f.ay), zero - load(f.az));
   const __m128 least = Kind::fromCentre ? zero : all(kLeastOfSphere);
-  const __m128 emitter = larger(Kind::mostEmitted(back, load(f.cosHalf), load(f.sinHalf)), least);
+  const __m128 emitter = larger(Kind::maxEmitted(back, load(f.cosHalf), load(f.sinHalf)), least);
   const __m128 cosine = larger(to.most(all(normal_.x), all(normal_.y), all(normal_.z)), least);
   __m128 value;
   if (diffuse_) {
@@ -142,7 +142,7 @@ std::optional<VplSampler::Draw> VplSampler::Point::draw(float u, Rng& rng) const
   const auto slot =
       std::min(starts_ - 1, static_cast<size_t>(std::upper_bound(begin, end, u * whole_) - begin));
   float probability = (upTo_[slot] - (slot > 0 ? upTo_[slot - 1] : 0.0f)) / whole_;
-  uint32_t child = sampler_.fours_[slot / 4].child[slot % 4];
+  uint32_t child = sampler_.nodes_[slot / 4].child[slot % 4];
   while ((child & kLeaf) == 0 && probability > 0.0f) {
     const Lanes weight = likely(child);
     const float sum = weight[0] + weight[1] + weight[2] + weight[3];
@@ -151,7 +151,7 @@ std::optional<VplSampler::Draw> VplSampler::Point::draw(float u, Rng& rng) const
     size_t lane = 0;
     for (float below = weight[0]; lane < 3 && pick >= below; below += weight[lane]) ++lane;
     probability *= weight[lane] / sum;
-    child = sampler_.fours_[child].child[lane];
+    child = sampler_.nodes_[child].child[lane];
   }
   // Rounding may select the last slot or lane even if its probability is 0.
   if (!(probability > 0.0f)) return {};

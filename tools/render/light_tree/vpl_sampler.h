@@ -38,9 +38,9 @@ class VplSampler {
    private:
     // Estimated light of each of four clusters without visibility, W/(m2 sr); 0 only if no light
     // can arrive.
-    Lanes likely(uint32_t four) const;
+    Lanes likely(uint32_t node) const;
     template <typename Kind>
-    Lanes likelyOf(uint32_t four) const;
+    Lanes likelyOf(uint32_t node) const;
 
     const VplSampler& sampler_;
     const Bsdf& bsdf_;
@@ -52,22 +52,22 @@ class VplSampler {
   };
 
  private:
-  struct alignas(16) Four {
+  struct alignas(16) Node4 {
     Lanes x{}, y{}, z{};              // centres of the spheres about the boxes
     Lanes radius2{};                  // squared radii of the spheres
     Lanes ax{}, ay{}, az{};           // axes of the cones of normals
     Lanes cosHalf{}, sinHalf{};       // cosines and sines of their half angles
     Lanes red{}, green{}, blue{};     // intensities, W/sr; 0 in an empty lane
     Lanes clamp2{1, 1, 1, 1};         // see LightNode
-    std::array<uint32_t, 4> child{};  // index of another Four, or kLeaf and a VPL
+    std::array<uint32_t, 4> child{};  // index of another Node4, or kLeaf and a VPL
   };
   static constexpr uint32_t kLeaf = 1u << 31;
 
   uint32_t add(const LightTree& tree, std::span<const uint32_t> nodes);
-  void fill(const LightTree& tree, std::span<const uint32_t> nodes, size_t four);
+  void fill(const LightTree& tree, std::span<const uint32_t> nodes, size_t node);
 
-  std::vector<Four> fours_;  // begins with those of the start cut
-  size_t startFours_ = 0;
+  std::vector<Node4> nodes_;  // begins with those of the start cut
+  size_t startNodes_ = 0;
   LightKind kind_ = {};
 };
 

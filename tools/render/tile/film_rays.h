@@ -17,7 +17,7 @@ class FilmRays {
         lights_(lights),
         filter_(filter),
         spatialLights_(spatialLights),
-        key_(streamKey(seed, Stream::PrimaryPoints)) {}
+        key_(streamKey(seed, Stream::FilmPoints)) {}
 
   // The shading point; its triangle is kNone if there is none. `emission` receives the emission on
   // the camera path, mean of the channels.
@@ -34,14 +34,14 @@ class FilmRays {
     return path.hit;
   }
 
-  PrimaryPoints all() const {
+  FilmPoints all() const {
     const Film& size = accel_.scene().film;
-    PrimaryPoints film{size.width, size.height, {}, {}};
-    film.points.resize(size_t{film.width} * film.height);
-    film.emission.resize(film.points.size());
-    parallelFor(film.points.size(), 64,
-                [&](size_t i) { film.points[i] = point(i, &film.emission[i]); });
-    return film;
+    FilmPoints found{size.width, size.height, {}, {}};
+    found.points.resize(size_t{found.width} * found.height);
+    found.emission.resize(found.points.size());
+    parallelFor(found.points.size(), 64,
+                [&](size_t i) { found.points[i] = point(i, &found.emission[i]); });
+    return found;
   }
 
  private:

@@ -17,7 +17,7 @@ double TileIntegrator::render(const TileSamples& tile, const SampleAllocation& a
   if (parts_.directSamples) pilot = parts_.directSamples->pilot(tile, learned.strata);
   double cost = directAlone ? 0.0 : double(count) * cost::kCameraRay;
   if (parts_.gather && only_ != Only::Direct) gatherVpls(tile, points, allocation, pilot.light);
-  if (parts_.compensate && only_ != Only::Direct) cost += compensate(tile, points);
+  if (parts_.compensateTile && only_ != Only::Direct) cost += compensateTile(tile, points);
   for (size_t i = 0; i < count; ++i) {
     CameraSample& s = tile.samples[i];
     cost += s.radiance.shadowRays + cost::kCluster * s.radiance.cut;
@@ -128,12 +128,12 @@ void TileIntegrator::gatherVpls(const TileSamples& tile, const ShadingPoints& po
 }
 
 // Adds the light of compensation for all samples at once. Returns its cost.
-double TileIntegrator::compensate(const TileSamples& tile, const ShadingPoints& points) const {
+double TileIntegrator::compensateTile(const TileSamples& tile, const ShadingPoints& points) const {
   std::vector<Gathered> found(points.bsdf.size());
   std::vector<Vec3> groups(found.size() * tile.groups);
   TileReceivers receivers{tile, points.bsdf};
   if (tile.groups > 0) receivers.groupSums = groups.data();
-  double cost = cost::kBsdfRay * double(parts_.compensate(receivers, found));
+  double cost = cost::kBsdfRay * double(parts_.compensateTile(receivers, found));
   for (size_t i = 0; i < found.size(); ++i) {
     RadianceSample& out = tile.samples[i].radiance;
     const Vec3 throughput = points.paths[i].throughput, light = throughput * found[i].radiance;

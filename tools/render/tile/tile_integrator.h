@@ -23,7 +23,7 @@ class TileIntegrator {
                 Rng& rng, const GroupSink& groups) const;
   void gatherVpls(const TileSamples& tile, const ShadingPoints& points,
                   const SampleAllocation& allocation, Vec3 meanDirect) const;
-  double compensate(const TileSamples& tile, const ShadingPoints& points) const;
+  double compensateTile(const TileSamples& tile, const ShadingPoints& points) const;
   double addRays(const TileSamples& tile, const ShadingPoints& points, const LearnedLight& learned,
                  const SampleAllocation& allocation, Vec3 meanDirect) const;
 

@@ -1,6 +1,6 @@
 #include "transport/bsdf/ggx/ggx.h"
 
-#include "transport/bsdf/scatter.h"
+#include "transport/bsdf/bsdf_sample.h"
 
 namespace bnvpl {
 

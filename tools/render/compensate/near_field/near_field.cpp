@@ -30,8 +30,8 @@ float areaOf(uint32_t i, const Coverage& coverage) {
   uint32_t points = 0, found = 0;
   for (; points < kAreaPoints || (found < kMinFound && points < kMaxAreaPoints); ++points) {
     const float before = sum;
-    coverage.forEachLayer(i, r2Sequence(points, 0.5, 0.5),
-                          [&](const SurfacePoint&, float area) { sum += area; });
+    coverage.forEachSurface(i, r2Sequence(points, 0.5, 0.5),
+                            [&](const SurfacePoint&, float area) { sum += area; });
     found += sum > before;
   }
   return found < kMinFound ? 0.0f : sum / static_cast<float>(points);
@@ -43,15 +43,15 @@ NearField::NearField(const VplTable& lit, const Accelerator& accel, float clamp,
                      const VplGroups& groups)
     : lit_(lit),
       coverage_(lit.position, lit.normal,
-                scaled(lit.radius,
-                       lit.reach > 0.0 ? static_cast<float>(lit.reach) : kReachWithoutPhotons),
+                scaled(lit.radius, lit.reachFactor > 0.0 ? static_cast<float>(lit.reachFactor)
+                                                         : kReachWithoutPhotons),
                 accel),
       kind_(kind),
       clampRadius_(scaled(lit.radius, clamp)),
       groups_(groups.groups),
       multiBounceFlux_(groups.flux),
       area_(lit.size()),
-      covers_(lit.reach > 0.0) {
+      covers_(lit.reachFactor > 0.0) {
   for (std::atomic<float>& area : area_) area = kUnknown;
   for (size_t i = 0; i < multiBounceFlux_.size(); ++i)
     multiBounceFlux_[i] = groups.flux[i] - groups.firstBounceFlux[i];

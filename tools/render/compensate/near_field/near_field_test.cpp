@@ -94,7 +94,7 @@ double distanceToAShareOfAVplThatReaches(const VplTable& lit, const SurfacePoint
                                          float distanceOverClamp, float share) {
   double nearest = INFINITY;
   for (size_t i = 0; i < lit.size(); ++i) {
-    const float reach = static_cast<float>(lit.reach) * lit.radius[i];
+    const float reach = static_cast<float>(lit.reachFactor) * lit.radius[i];
     if (length(hit.position - lit.position[i]) > 1.0001f * reach) continue;
     if (dot(hit.ng, lit.normal[i]) < 0.5f) continue;
     const double relative = double{distanceOverClamp} / double{lit.radius[i]};
@@ -151,7 +151,7 @@ TEST(NearField, RadianceUsesTheCoveredAreaAndSliversAreUnknown) {
     const Accelerator accel(scene);
     VplTable lit;
     lit.stage = VplStage::Lit;
-    lit.reach = 1.0;
+    lit.reachFactor = 1.0;
     lit.position = lit.emitPosition = {Vec3()};
     lit.normal = lit.emitNormal = {Vec3(0, 1, 0)};
     lit.albedo = {Vec3(0.5f)};

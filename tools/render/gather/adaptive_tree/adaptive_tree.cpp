@@ -89,7 +89,7 @@ class AdaptiveTree {
     const float receiver = largest(normal), back = largest(-n.axis);
     if (!(receiver > 0.0f)) return 0.0f;
     const float emitter = withKind(
-        n.kind, [&](auto k) { return k.mostEmitted(back, n.cosHalfAngle, n.sinHalfAngle); });
+        n.kind, [&](auto k) { return k.maxEmitted(back, n.cosHalfAngle, n.sinHalfAngle); });
     return intensity * receiver * emitter / d2;
   }
 
@@ -100,8 +100,9 @@ class AdaptiveTree {
     const double e = (tree_.upTo[n.end] - tree_.upTo[n.begin]) / count;
     const double varE =
         std::max(0.0, (squaresUpTo_[n.end] - squaresUpTo_[n.begin]) / count - e * e);
-    const double a = std::sqrt(double{larger(n.bounds.distanceSquared(at), n.clamp2)});
-    const double b = std::max(a, double{length(max(at - n.bounds.lower, n.bounds.upper - at))});
+    const Bounds centres = n.centres();
+    const double a = std::sqrt(double{larger(centres.distanceSquared(at), n.clamp2)});
+    const double b = std::max(a, double{length(max(at - centres.lower, centres.upper - at))});
     const double g = 1.0 / (a * b);
     const double varG = (b - a) * (b - a) * g * g * g / 3.0;
     return count * std::sqrt(varE * varG + varE * g * g + e * e * varG);

@@ -50,8 +50,11 @@ Gather make(const GatherInputs& in, const Values& options) {
   const auto plan = std::make_shared<const PairPlan>(makePairPlan(
       in,
       {double{options.real32(kErrorOption)}, static_cast<size_t>(options[kVisibilityRaysOption])}));
-  return gatherEach(
+  Gather gather = gatherEach(
       [in, plan](const Bsdf& bsdf, const GroupSink&) { return gatherPairs(in, *plan, bsdf); });
+  gather.planned = {{"plan_pairs", "pairs found for the film", double(plan->pairs.size())},
+                    {"plan_rays", "shadow rays by which they were found", double(plan->rays)}};
+  return gather;
 }
 
 }  // namespace

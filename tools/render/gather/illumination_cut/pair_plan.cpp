@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <numeric>
 #include <queue>
 
@@ -41,6 +42,7 @@ class PairPlanner {
       plan_.pairs.push_back(f.pair);
     }
     std::partial_sum(plan_.begin.begin(), plan_.begin.end(), plan_.begin.begin());
+    plan_.rays = rays_;
   }
 
  private:
@@ -54,7 +56,7 @@ class PairPlanner {
   const SurfacePoint& receiver(size_t k) const { return points_[plan_.tree.order[k]]; }
 
   void placeReceivers() {
-    points_ = in_.primaryPoints().points;
+    points_ = in_.filmPoints().points;
     std::erase_if(points_, [](const SurfacePoint& p) { return p.triangle == kNone; });
     std::vector<ReceiverBsdf> bsdfs(points_.size());
     parallelFor(points_.size(), 256,
@@ -92,6 +94,7 @@ class PairPlanner {
       test.add(n.representative, mean(n.intensity) / mean(in_.vpls.intensity[n.representative]),
                out);
     }
+    rays_.fetch_add(out.shadowRays, std::memory_order_relaxed);
     return out.radiance.x + out.radiance.y + out.radiance.z;
   }
 
@@ -176,6 +179,7 @@ class PairPlanner {
     const Vec3 d = in_.vpls.position[vpl] - p.position;
     if (dot(d, p.ns) <= 0.0f || dot(d, p.ng) <= 0.0f || dot(d, in_.vpls.normal[vpl]) >= 0.0f)
       return false;
+    rays_.fetch_add(1, std::memory_order_relaxed);
     return !in_.accel.occluded(in_.accel.offsetOrigin(p.position, p.ng), in_.vpls.position[vpl]);
   }
 
@@ -183,6 +187,7 @@ class PairPlanner {
   const PairOptions& options_;
   PairPlan& plan_;
   std::vector<SurfacePoint> points_;
+  mutable std::atomic<uint64_t> rays_ = 0;
   std::vector<float> least_;  // for each node of the receivers' tree, channels added, W/(m2 sr)
 };
 

@@ -23,6 +23,7 @@ struct PairPlan {
   float normalScale = 1.0f;     // scale of normals in the tree
   std::vector<uint32_t> begin;  // range of each node's pairs; has one entry more
   std::vector<LightPair> pairs;
+  uint64_t rays = 0;  // shadow rays that the plan took
 
   // Calls fn for every pair of a point: those of the nodes on the way to the film's point that is
   // about the nearest, in position and normal.

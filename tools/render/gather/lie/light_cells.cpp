@@ -69,7 +69,7 @@ class CellBuilder {
     const Film& size = in_.accel.scene().film;
     const double pixels = double(size.width) * size.height;
     requireMemory(pixels * double(sizeof(SurfacePoint)), "--gather lie", "choose a smaller --size");
-    std::vector<SurfacePoint> film = in_.primaryPoints().points;
+    std::vector<SurfacePoint> film = in_.filmPoints().points;
     std::erase_if(film, [](const SurfacePoint& p) { return p.triangle == kNone; });
     Bounds seen;
     for (const SurfacePoint& p : film) seen.extend(p.position);

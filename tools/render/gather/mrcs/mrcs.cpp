@@ -22,7 +22,7 @@ constexpr auto kOptions = optionTable(kRowsOption, kColumnsOption);
 constexpr double kSampledShare = 2.0 / 3.0;  // clusters found by sampling; the rest by splitting
 
 // One random point of the film in each of about `rows` cells of equal size that see a surface.
-std::vector<SurfacePoint> rowPoints(const PrimaryPoints& film, uint64_t rows, Rng& rng) {
+std::vector<SurfacePoint> rowPoints(const FilmPoints& film, uint64_t rows, Rng& rng) {
   const double pixels = double(film.width) * double(film.height);
   const double side = std::max(1.0, std::sqrt(pixels / double(rows)));
   const auto across = static_cast<uint32_t>(std::ceil(film.width / side)),
@@ -106,7 +106,7 @@ Plan planOf(const GatherInputs& in, const Values& options) {
   Plan plan;
   if (in.vpls.size() == 0) return plan;
   Rng rng(streamKey(in.seed, Stream::LightTree) + 2, 0);
-  const std::vector<SurfacePoint> rows = rowPoints(in.primaryPoints(), options[kRowsOption], rng);
+  const std::vector<SurfacePoint> rows = rowPoints(in.filmPoints(), options[kRowsOption], rng);
   plan.rows = rows.size();
   const Columns columns = columnsAt(in, rows, "rows");
   std::vector<double> shares(columns.size());

@@ -62,8 +62,8 @@ float spread(const OctreeNode& n, LightKind kind, Vec3 intensity, const Bsdf& bs
   const float sinHalf = n.cone.cosHalfAngle <= 0.0f ? 1.0f : std::sin(half);
   const CosineRange back = sphere.cosines(-n.cone.axis);
   const auto [most, least] = withKind(kind, [&](auto k) {
-    return std::pair{k.mostEmitted(back.high, n.cone.cosHalfAngle, sinHalf),
-                     k.leastEmitted(back.low, n.cone.cosHalfAngle, sinHalf)};
+    return std::pair{k.maxEmitted(back.high, n.cone.cosHalfAngle, sinHalf),
+                     k.minEmitted(back.low, n.cone.cosHalfAngle, sinHalf)};
   });
   if (most <= 0.0f) return -1.0f;
   if (n.leaf()) return 0.0f;
@@ -135,7 +135,9 @@ class Octree {
     const VplLights& lights = tree_.lights;
     Open o{spread(n, lights.kind, lights.intensity[node], bsdf), node, {}};
     VplTransfer c;
-    if (o.spread < 0.0f || !unoccludedTransfer(lights, node, bsdf, c)) return o;
+    if (o.spread < 0.0f || !(n.leaf() ? unoccludedTransfer(vpls_, n.shadow, bsdf, c)
+                                      : unoccludedTransfer(lights, node, bsdf, c)))
+      return o;
     out.sampledPairs += c.sampled;
     if (shadows_) {
       ++out.shadowRays;

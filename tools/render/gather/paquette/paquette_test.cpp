@@ -14,7 +14,10 @@ TEST(Paquette, HasAboutTheEnergyOfAllVpls) {
   expectEnergyInFurnaceAndOfOneBounce("paquette", 0.02);
 }
 
-TEST(Paquette, WithoutErrorItIsTheSumOverAll) { expectSumOverAll("paquette", {{"error", "0"}}); }
+TEST(Paquette, WithoutErrorItIsTheSumOverAll) {
+  expectSumOverAll("paquette", {{"error", "0"}});
+  expectSumOverAll("paquette", {{"error", "0"}}, {{"light", "spherical"}, {"clamp", "2"}});
+}
 
 // Nothing hides a VPL in a convex room, where the published method is exact, too.
 TEST(Paquette, WithoutErrorAndShadowsItIsTheSumOverAllUnhidden) {

@@ -25,7 +25,7 @@ BrightLights::Cell BrightLights::find(const Bounds& box) const {
   const Vec3 centre = box.center();
   const float radius = 0.5f * length(box.extent());
   std::vector<float> most(vpls_.size());  // irradiance that no point of the cell exceeds, W/m2
-  double arriving = 0.0;                  // at the centre of the cell, from all VPLs
+  double arriving = 0.0;  // from all VPLs at the cell, with their largest emission towards it
   for (size_t i = 0; i < vpls_.size(); ++i) {
     const Vec3 to = vpls_.position[i] - centre, half = 0.5f * vpls_.box(i).extent();
     const float d2 = lengthSquared(to), intensity = mean(vpls_.intensity[i]);
@@ -37,7 +37,7 @@ BrightLights::Cell BrightLights::find(const Bounds& box) const {
           cosineOfLess(-dot(vpls_.normal[i], to) / std::sqrt(d2), sineOf(sinSphere), sinSphere);
     }
     const float emitted =
-        intensity * withKind(vpls_.kind, [&](auto k) { return k.mostEmitted(cosine, 1.0f, 0.0f); });
+        intensity * withKind(vpls_.kind, [&](auto k) { return k.maxEmitted(cosine, 1.0f, 0.0f); });
     const Bounds grown{box.lower - half, box.upper + half};
     most[i] =
         emitted * maxFalloff(vpls_.kind, grown.distanceSquared(vpls_.position[i]), vpls_.clamp2[i]);

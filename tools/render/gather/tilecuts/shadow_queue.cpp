@@ -82,7 +82,6 @@ void ShadowQueue::add(ReceiverPacket& p, const VplDraw& vpl, uint32_t cluster, f
   for (uint32_t rest = lanes; rest != 0; rest &= rest - 1) {
     const auto l = static_cast<uint32_t>(std::countr_zero(rest));
     ++p.shadowRays[l];
-    if (!integrated_.empty()) p.sampledPairs[l] += integrated_.back().sampled >> l & 1u;
     ++rayCount_[p.pixelOrder[l]];
   }
   raysWaiting_ += static_cast<size_t>(std::popcount(lanes));
@@ -110,15 +109,15 @@ void ShadowQueue::removeLast() {
 }
 
 // Roulette multiplies `transfer` by the packet's brightest BSDF, which is part of the light here.
-uint32_t ShadowQueue::integrate(const ReceiverPacket& p, uint32_t vpl, Lanes& transfer) {
+uint32_t ShadowQueue::integrate(ReceiverPacket& p, uint32_t vpl, Lanes& transfer) {
   Integrated& light = integrated_.emplace_back();
   uint32_t lanes = 0;
   for (uint32_t l = 0; l < p.count; ++l) {
     VplTransfer found;
     if (!unoccludedTransfer(vpls_, vpl, *p.bsdf[l], found)) continue;
     lanes |= 1u << l;
-    light.transfer[l] = found.transfer;
-    light.sampled |= uint32_t{found.sampled} << l;
+    light[l] = found.transfer;
+    p.sampledPairs[l] += found.sampled;
     transfer[l] = maxComponent(found.transfer) / p.brightest;
   }
   return lanes;
@@ -176,10 +175,10 @@ void ShadowQueue::accumulateIntegrated(const PendingContribution& d,
   ReceiverPacket& p = *d.packet;
   for (uint32_t rest = d.lanes; rest != 0; rest &= rest - 1) {
     const auto l = static_cast<uint32_t>(std::countr_zero(rest));
-    p.glossy[l] += light.transfer[l] * d.light;
+    p.glossy[l] += light[l] * d.light;
     for (uint32_t k = 0; k < p.groups.size(); ++k) {
       const Vec3 own = vpls_.groupIntensity[size_t{d.vpl} * vpls_.groups + k] * d.weight;
-      p.groups[k].glossy[l] += light.transfer[l] * own;
+      p.groups[k].glossy[l] += light[l] * own;
     }
   }
 }

@@ -38,16 +38,13 @@ class ShadowQueue {
   };
   // Light of a VPL that is no product of BSDF and irradiance (VplLights::kind), by lane: BSDF and
   // cosines over its sphere, 1/m2.
-  struct Integrated {
-    std::array<Vec3, ReceiverPacket::kSize> transfer{};
-    uint32_t sampled = 0;  // mask of the lanes whose transfer is a mean of samples
-  };
+  using Integrated = std::array<Vec3, ReceiverPacket::kSize>;
   struct Ray {
     uint32_t pending, lane;
   };
 
   // Mask of the lanes that the VPL may light, and their transfer.
-  uint32_t integrate(const ReceiverPacket& p, uint32_t vpl, Lanes& transfer);
+  uint32_t integrate(ReceiverPacket& p, uint32_t vpl, Lanes& transfer);
   void removeLast();
   void traceAll();
   static void accumulate(const PendingContribution& d);

@@ -138,7 +138,8 @@ TileCut chooseTileCut(const Accelerator& accel, const VplLights& vpls, const Lig
   TileCut cut;
   const double maxVarianceSum = double{options.error} * double{options.error} *
                                 double(tile.samplesPerPixel) * double{kSampleReceivers};
-  // Refining a cluster halves its variance, about, and costs a ray.
+  // Refining a cluster costs a ray. It is taken to remove half of the variance: a split across a
+  // surface removes three quarters of what the model says, other splits less.
   const double minVarianceToRefine =
       2.0 * tile.marginalCost * double{kSampleReceivers} / kVarianceShare;
   const auto allowedVariance =

@@ -27,7 +27,7 @@ constexpr auto kOptions = optionTable(kToleranceOption, kVisibilityTestsOption);
 // which few tests cannot establish.
 std::vector<float> hitRates(const GatherInputs& in, uint64_t tests) {
   std::vector<SurfacePoint> seen;
-  for (const SurfacePoint& p : in.primaryPoints().points) {
+  for (const SurfacePoint& p : in.filmPoints().points) {
     if (p.triangle != kNone) seen.push_back(p);
   }
   std::vector<float> rates(in.vpls.size(), 0.5f);

@@ -85,10 +85,10 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   if (indirect) tile.reuse = static_cast<unsigned>(options[kReuseOption]);
   const FilmRays filmRays(in.accel, in.lights, in.filter, tile.spatialLights, in.seed);
   const bool controlled = indirect && options[kControlOption] == "vpls";
-  const PrimaryPoints film =
-      controlled || in.only != Only::Indirect ? filmRays.all() : PrimaryPoints{};
-  if (controlled) tile.control = makeControlVariate(in, film);
-  addDirectLight(in, options, filmRays, film, kLightRays, tile);
+  const FilmPoints filmPoints =
+      controlled || in.only != Only::Indirect ? filmRays.all() : FilmPoints{};
+  if (controlled) tile.control = makeControlVariate(in, filmPoints);
+  addDirectLight(in, options, filmRays, filmPoints, kLightRays, tile);
   tile.caustics = makeCaustics(in, kCausticPhotons * samplesOf(in, options),
                                tile.raysEach * options[kSppOption], maxBouncesOf(options));
   const CausticStats caustics = tile.caustics ? tile.caustics->stats() : CausticStats{};

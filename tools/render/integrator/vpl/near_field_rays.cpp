@@ -220,7 +220,7 @@ void NearFieldRays::shade(Path& path, const Uncovered& uncovered, const Bsdf& bs
       groups.add(g, uncovered.multiBounceFlux[g] * uncovered.perFlux);
     return;
   }
-  const Gathered vpls = point_(bsdf, first ? kFirstDraws : kLaterDraws, path.rng, groups);
+  const Gathered vpls = gatherAt_(bsdf, first ? kFirstDraws : kLaterDraws, path.rng, groups);
   path.light += path.throughput * (firstBounce + vpls.radiance);
   path.out.clamped += path.reused ? path.start.throughput * path.throughput * vpls.clamped
                                   : path.throughput * vpls.clamped;
@@ -232,7 +232,7 @@ bool NearFieldRays::extend(Path& path, const Bsdf& bsdf) const {
   BsdfSample sample;
   Ray next;
   if (path.segments == kMaxSegments ||
-      !scatter(accel_, bsdf, LobeGroup::Rough, Transport::Radiance, path.rng, sample, next)) {
+      !sampleNextRay(accel_, bsdf, LobeGroup::Rough, Transport::Radiance, path.rng, sample, next)) {
     return false;
   }
   ++path.out.continued;

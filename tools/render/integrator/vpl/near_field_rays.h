@@ -18,12 +18,12 @@ class NearFieldRays : public IndirectRays {
   // `point`: gathers VPLs at the vertices of rays. `misRays`: the number of rays from a shading
   // point that MIS with shadow rays and photons assumes; other numbers remain unbiased.
   // `spatialLights`: distribution for light sampling at vertices; null: sampling by power.
-  NearFieldRays(const Accelerator& accel, const LightSet& lights, GatherPoint point,
+  NearFieldRays(const Accelerator& accel, const LightSet& lights, PointGatherFn point,
                 Compensation compensation, unsigned misRays,
                 const SpatialLightSampler* spatialLights, Only only)
       : accel_(accel),
         lights_(lights),
-        point_(std::move(point)),
+        gatherAt_(std::move(point)),
         compensation_(std::move(compensation)),
         misRays_(misRays),
         spatialLights_(spatialLights),
@@ -48,7 +48,7 @@ class NearFieldRays : public IndirectRays {
 
   const Accelerator& accel_;
   const LightSet& lights_;
-  GatherPoint point_;
+  PointGatherFn gatherAt_;
   Compensation compensation_;
   unsigned misRays_;
   const SpatialLightSampler* spatialLights_;

@@ -1,5 +1,5 @@
-// The renderer of the thesis: direct light by shadow rays, indirect light from the VPLs.
-// NearFieldRays add the light that VPLs do not carry.
+// The default renderer (thesis, section 3.5, and more): direct light by shadow rays, indirect light
+// from the VPLs, and NearFieldRays for the light that VPLs do not carry.
 #include <array>
 #include <memory>
 
@@ -69,7 +69,7 @@ struct Parts {
 
 // Counts the pairs whose light is sampled, after the gather's own counters. The compensations that
 // take such light have none.
-GatherTile countingSampledPairs(GatherTile gather, size_t counter) {
+TileGatherFn countingSampledPairs(TileGatherFn gather, size_t counter) {
   return [gather = std::move(gather), counter](const TileReceivers& tile, std::span<Gathered> out) {
     gather(tile, out);
     for (Gathered& g : out) g.counts[counter] = g.sampledPairs;
@@ -77,12 +77,13 @@ GatherTile countingSampledPairs(GatherTile gather, size_t counter) {
 }
 
 // Makes the gather method. Its point function is always set.
-Gather makeGather(const IntegratorInputs& in, const Values& options, const FilmRays& film,
+Gather makeGather(const IntegratorInputs& in, const Values& options, const FilmRays& filmRays,
                   Parts& parts) {
   parts.tree = buildLightTree(parts.vpls, in.seed);
-  Gather gather = gatherOf(options)->make({in.accel, in.lights, in.lit, parts.vpls, parts.tree,
-                                           in.seed, [film] { return film.all(); }, in.progress},
-                                          options);
+  Gather gather =
+      gatherOf(options)->make({in.accel, in.lights, in.lit, parts.vpls, parts.tree, in.seed,
+                               [filmRays] { return filmRays.all(); }, in.progress},
+                              options);
   if (!isFromCentre(parts.vpls.kind))
     gather.tile = countingSampledPairs(std::move(gather.tile), gatherOf(options)->counters.size());
   if (!gather.point) {
@@ -98,14 +99,14 @@ Gather makeGather(const IntegratorInputs& in, const Values& options, const FilmR
 // Adds compensation for all samples of a tile at once, where the method has it, and the counters of
 // compensation.
 void addTileCompensation(const IntegratorInputs& in, const Values& options,
-                         const Compensation& compensation, const GatherPoint& point,
+                         const Compensation& compensation, const PointGatherFn& point,
                          TileParts& out) {
   out.gatherCounters = gatherOf(options)->counters.size();
   out.countsContinued = compensationOf(options)->countsContinued;
   if (!compensation.tile) return;
-  out.compensate = [fn = compensation.tile,
-                    lights = VertexLights{in.lights, out.spatialLights, point}](
-                       const TileReceivers& receivers, std::span<Gathered> found) {
+  out.compensateTile = [fn = compensation.tile,
+                        lights = VertexLights{in.lights, out.spatialLights, point}](
+                           const TileReceivers& receivers, std::span<Gathered> found) {
     return fn(receivers, lights, found);
   };
 }
@@ -148,9 +149,9 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   if (indirect) addTileCompensation(in, options, compensation, gather.point, tile);
   const bool learned = in.only != Only::Indirect && options[kDirectOption] == "learned";
   const bool controlled = indirect && options[kControlOption] == "vpls";
-  const PrimaryPoints film = controlled || learned ? filmRays.all() : PrimaryPoints{};
-  if (controlled) tile.control = makeControlVariate(in, film);
-  addDirectLight(in, options, filmRays, film,
+  const FilmPoints filmPoints = controlled || learned ? filmRays.all() : FilmPoints{};
+  if (controlled) tile.control = makeControlVariate(in, filmPoints);
+  addDirectLight(in, options, filmRays, filmPoints,
                  learned ? static_cast<unsigned>(options[kLightRaysOption]) : 0, tile);
   if (tile.raysEach > 0) {
     tile.rays = std::make_unique<const NearFieldRays>(in.accel, in.lights, std::move(gather.point),

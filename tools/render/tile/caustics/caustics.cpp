@@ -168,7 +168,8 @@ void Caustics::trace(const Photon& photon, Rng& rng, Splats& out) const {
     }
     if (!(bsdf.specularProbability() > 0.0f)) return;
     BsdfSample sample;
-    if (!scatter(accel_, bsdf, LobeGroup::Specular, Transport::Photons, rng, sample, next)) return;
+    if (!sampleNextRay(accel_, bsdf, LobeGroup::Specular, Transport::Photons, rng, sample, next))
+      return;
     flux *= sample.weight;
     if (specularBounces == 0) continue;
     const float survive = std::min(1.0f, maxComponent(sample.weight));
@@ -181,7 +182,7 @@ void Caustics::followBounces(const Bsdf& bsdf, Vec3 flux, const Photon& photon, 
                              Splats& out) const {
   BsdfSample sample;
   Ray next;
-  if (!scatter(accel_, bsdf, LobeGroup::Rough, Transport::Photons, rng, sample, next)) return;
+  if (!sampleNextRay(accel_, bsdf, LobeGroup::Rough, Transport::Photons, rng, sample, next)) return;
   const float survive = std::min(1.0f, maxComponent(sample.weight));
   if (rng.next() >= survive) return;
   PhotonWalk walk({next.origin, next.direction, flux * sample.weight * (1.0f / survive)}, bounces_,

@@ -21,11 +21,12 @@ constexpr double kMaxPrediction = 2.0;
 }  // namespace
 
 PixelControlVariate::PixelControlVariate(const Accelerator& accel, const LightSet& lights,
-                                         const PixelFilter& filter, const PrimaryPoints& film,
+                                         const PixelFilter& filter, const FilmPoints& filmPoints,
                                          const VplTable& lit, const VplGroups& groups)
     : scene_(accel.scene()),
       field_(lit, groups),
-      pixels_(accel, lights, filter, film, predictedAt(film), kMinDeviation, kDimControlRays) {}
+      pixels_(accel, lights, filter, filmPoints, predictedAt(filmPoints), kMinDeviation,
+              kDimControlRays) {}
 
 Vec3 PixelControlVariate::predicted(const SpecularPath& path) const {
   if (!path.rough) return {};
@@ -41,10 +42,10 @@ void PixelControlVariate::addByGroup(const SpecularPath& path, float factor,
   field_.addByGroup(path.hit.position, path.hit.ng, sink.times(reflected * factor));
 }
 
-std::vector<float> PixelControlVariate::predictedAt(const PrimaryPoints& film) const {
-  std::vector<float> values(film.points.size());
+std::vector<float> PixelControlVariate::predictedAt(const FilmPoints& filmPoints) const {
+  std::vector<float> values(filmPoints.points.size());
   parallelFor(values.size(), 1024, [&](size_t i) {
-    const SurfacePoint& hit = film.points[i];
+    const SurfacePoint& hit = filmPoints.points[i];
     if (hit.triangle == kNone) return;
     values[i] = mean(Bsdf(scene_, hit).roughAlbedo() * field_.indirectAt(hit.position, hit.ng));
   });

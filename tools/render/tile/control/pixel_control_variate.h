@@ -13,7 +13,8 @@ class PixelControlVariate {
  public:
   // Borrows rays and lights.
   PixelControlVariate(const Accelerator& accel, const LightSet& lights, const PixelFilter& filter,
-                      const PrimaryPoints& film, const VplTable& lit, const VplGroups& groups = {});
+                      const FilmPoints& filmPoints, const VplTable& lit,
+                      const VplGroups& groups = {});
 
   // Adds to the indirect light of each sample, which saw the end of its path,
   //
@@ -26,7 +27,7 @@ class PixelControlVariate {
  private:
   Vec3 predicted(const SpecularPath& path) const;
   void addByGroup(const SpecularPath& path, float factor, const GroupSink& sink) const;
-  std::vector<float> predictedAt(const PrimaryPoints& film) const;
+  std::vector<float> predictedAt(const FilmPoints& filmPoints) const;
 
   const Scene& scene_;
   IrradianceField field_;

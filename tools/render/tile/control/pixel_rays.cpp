@@ -16,23 +16,23 @@ constexpr double kRays = 8, kMinRays = 2, kMaxRays = 32;
 }  // namespace
 
 PixelRays::PixelRays(const Accelerator& accel, const LightSet& lights, const PixelFilter& filter,
-                     const PrimaryPoints& film, std::span<const float> values, double minDeviation,
-                     TileDimension dimension)
+                     const FilmPoints& filmPoints, std::span<const float> values,
+                     double minDeviation, TileDimension dimension)
     : accel_(accel),
       lights_(lights),
       filter_(filter),
-      width_(film.width),
+      width_(filmPoints.width),
       dimension_(dimension),
       raysEach_(values.size()) {
   const double filmMean =
       parallelSum(raysEach_.size(), [&](size_t i) { return double{values[i]}; }) /
       static_cast<double>(raysEach_.size());
   parallelFor(raysEach_.size(), 1024, [&](size_t i) {
-    const size_t x = i % film.width, y = i / film.width;
+    const size_t x = i % filmPoints.width, y = i / filmPoints.width;
     double sum = 0.0, squares = 0.0, count = 0.0;
-    for (size_t v = y > 0 ? y - 1 : 0; v < std::min<size_t>(film.height, y + 2); ++v) {
-      for (size_t u = x > 0 ? x - 1 : 0; u < std::min<size_t>(film.width, x + 2); ++u) {
-        const double value = double{values[v * film.width + u]};
+    for (size_t v = y > 0 ? y - 1 : 0; v < std::min<size_t>(filmPoints.height, y + 2); ++v) {
+      for (size_t u = x > 0 ? x - 1 : 0; u < std::min<size_t>(filmPoints.width, x + 2); ++u) {
+        const double value = double{values[v * filmPoints.width + u]};
         sum += value, squares += value * value, count += 1.0;
       }
     }

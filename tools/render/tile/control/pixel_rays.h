@@ -20,7 +20,7 @@ class PixelRays {
   // rays each of the pixel's samples gets; none where its deviation is below `minDeviation` times
   // its mean. Borrows rays and lights.
   PixelRays(const Accelerator& accel, const LightSet& lights, const PixelFilter& filter,
-            const PrimaryPoints& film, std::span<const float> values, double minDeviation,
+            const FilmPoints& filmPoints, std::span<const float> values, double minDeviation,
             TileDimension dimension);
 
   // Rays for each sample of a pixel of the tile.

@@ -11,8 +11,8 @@ class VisibleEmission {
  public:
   // Borrows rays and lights.
   VisibleEmission(const Accelerator& accel, const LightSet& lights, const PixelFilter& filter,
-                  const PrimaryPoints& film)
-      : pixels_(accel, lights, filter, film, film.emission, 0.0, kDimEmissionRays) {}
+                  const FilmPoints& filmPoints)
+      : pixels_(accel, lights, filter, filmPoints, filmPoints.emission, 0.0, kDimEmissionRays) {}
 
   // `sum`: direct light and emission of `count` camera rays of a sample. Replaces both by the mean
   // over these and the pixel's further rays. The number of further rays depends on the film's

@@ -1,4 +1,4 @@
-#include "tools/estimate/both/receivers.h"
+#include "tools/estimate/both/irradiance_probes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -30,7 +30,7 @@ float irradiancePerWatt(const VplTable& vpls, size_t at, size_t from) {
 
 }  // namespace
 
-Receivers::Receivers(const VplTable& vpls, const Accelerator& accel)
+IrradianceProbes::IrradianceProbes(const VplTable& vpls, const Accelerator& accel)
     : vpls_(vpls.size()), weights_(countFor(vpls.size()) * vpls.size()) {
   const size_t count = countFor(vpls_);
   parallelFor(count, 1, [&](size_t r) {
@@ -45,8 +45,8 @@ Receivers::Receivers(const VplTable& vpls, const Accelerator& accel)
   });
 }
 
-double Receivers::relativeError(std::span<const double> flux,
-                                std::span<const double> variance) const {
+double IrradianceProbes::relativeError(std::span<const double> flux,
+                                       std::span<const double> variance) const {
   double sum = 0.0;
   size_t lit = 0;
   for (auto w = weights_.begin(); w != weights_.end(); w += static_cast<std::ptrdiff_t>(vpls_)) {

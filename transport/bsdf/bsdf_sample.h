@@ -11,6 +11,8 @@ namespace bnvpl {
 // exponent n has alpha = sqrt(2 / (n + 2)).
 inline constexpr float kRoughAlpha = 0.3f;
 
+// Rough: diffuse reflection, and glossy from kRoughAlpha on. Specular: mirrors, near-specular lobes
+// below it, and all that crosses the surface.
 enum class LobeGroup { Rough, Specular };
 
 // The quantity that a path carries. It decides which normal the cosine refers to, and whether

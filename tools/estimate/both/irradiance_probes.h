@@ -10,19 +10,20 @@
 
 namespace bnvpl::methods::estimate::both {
 
-// Receivers of light: a subset of the VPLs' positions, as they lie where the image needs light.
-class Receivers {
+// Points at which irradiance is judged: some of the VPLs' positions, which lie where the image
+// needs light.
+class IrradianceProbes {
  public:
-  // Traces a shadow ray from each receiver to each VPL that faces it, about a million in total.
-  Receivers(const VplTable& vpls, const Accelerator& accel);
+  // Traces a shadow ray from each probe to each VPL that faces it, about a million in total.
+  IrradianceProbes(const VplTable& vpls, const Accelerator& accel);
 
   // Standard deviation of the irradiance over the irradiance, clamped to 1 and averaged over the
-  // receivers whose irradiance has variance. `flux` (W) and its `variance` have one entry per VPL.
+  // probes whose irradiance has variance. `flux` (W) and its `variance` have one entry per VPL.
   double relativeError(std::span<const double> flux, std::span<const double> variance) const;
 
  private:
   size_t vpls_;
-  std::vector<float> weights_;  // irradiance per watt of each VPL, receiver by receiver
+  std::vector<float> weights_;  // irradiance per watt of each VPL, probe by probe
 };
 
 }  // namespace bnvpl::methods::estimate::both
