@@ -161,7 +161,9 @@ Emission EmissionGuide::draw(double choice, Rng& rng) const {
   const Cell& cell = cells_[static_cast<size_t>(chosen)];
   e.light = cell.light;
   for (size_t d = 0; d < e.at.size(); ++d)
-    e.at[d] = std::min(cell.lower[d] + rng.next() * cell.size[d], 0x1.fffffep-1f);
+    // Rounding must not lead into the next cell, whose density is another.
+    e.at[d] = std::min(cell.lower[d] + rng.next() * cell.size[d],
+                       std::nextafter(cell.lower[d] + cell.size[d], 0.0f));
   return e;
 }
 

@@ -133,7 +133,7 @@ bool LightSet::sampleDirect(size_t index, Vec3 at, float u, float v, DirectSampl
     if (!(d2 > 0.0f)) return false;
     out.wi = d / std::sqrt(d2);
     const float falloff =
-        s.type == LightType::Spot ? spotFalloff(s, -dot(out.wi, s.direction)) : 1.0f;
+        s.type == LightType::Spot ? spotFalloff(s, versineBetween(-out.wi, s.direction)) : 1.0f;
     out.radianceOverPdf = s.emission * (falloff / d2);
     out.pdf = 0.0f;
     out.infinite = false;
@@ -318,7 +318,8 @@ PhotonStart LightSet::emit(size_t index, const EmissionPoint& at) const {
     const Vec3 d = sampleNarrowCone(at[0], at[1], versine(s.coneRad));
     start.origin = s.position;
     start.direction = Basis(s.direction).toWorld(d);
-    start.flux = s.emission * (spotFalloff(s, d.z) / pdfNarrowCone(versine(s.coneRad)));
+    const float fromAxis = at[0] * versine(s.coneRad);  // that of the sampled direction
+    start.flux = s.emission * (spotFalloff(s, fromAxis) / pdfNarrowCone(versine(s.coneRad)));
   } else {
     start = emitFromInfinity(light, at);
   }

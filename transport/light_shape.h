@@ -16,15 +16,6 @@ inline float silhouetteArea(const Bounds& box, Vec3 direction) {
          std::fabs(direction.z) * e.x * e.y;
 }
 
-inline float spotFalloff(const LightSpec& s, float cosAngle) {
-  const float angle = std::acos(std::clamp(cosAngle, -1.0f, 1.0f));
-  if (angle >= s.coneRad) return 0.0f;
-  const float inner = s.coneRad - s.falloffRad;
-  if (angle <= inner) return 1.0f;
-  const float t = (s.coneRad - angle) / s.falloffRad;
-  return t * t * (3.0f - 2.0f * t);
-}
-
 // Directions of an environment image: u turns about +y from -z over +x, v goes down from +y. As for
 // a mesh, rotate_deg turns the image by the right-hand rule.
 inline Vec3 directionOf(const LightSpec& s, float u, float v) {
@@ -54,13 +45,24 @@ inline float versine(float angleRad) {
   const float s = std::sin(0.5f * angleRad);
   return 2.0f * s * s;
 }
+inline float versineBetween(Vec3 a, Vec3 b) { return 0.5f * lengthSquared(a - b); }  // unit vectors
 inline Vec3 sampleNarrowCone(float u, float v, float coneVersine) {
   const float w = u * coneVersine, r = std::sqrt(w * (2.0f - w));
   return {r * std::cos(2.0f * kPi * v), r * std::sin(2.0f * kPi * v), 1.0f - w};
 }
 inline float pdfNarrowCone(float coneVersine) { return 1.0f / (2.0f * kPi * coneVersine); }
-inline bool inNarrowCone(Vec3 direction, Vec3 axis, float coneVersine) {  // |a - b|^2 = 2 (1 - cos)
-  return lengthSquared(direction - axis) <= 2.0f * coneVersine;
+inline bool inNarrowCone(Vec3 direction, Vec3 axis, float coneVersine) {
+  return versineBetween(direction, axis) <= coneVersine;
+}
+
+// `fromAxis`: versine of the angle to the spot's axis.
+inline float spotFalloff(const LightSpec& s, float fromAxis) {
+  const float angle = 2.0f * std::asin(std::min(1.0f, std::sqrt(0.5f * fromAxis)));
+  if (angle >= s.coneRad) return 0.0f;
+  const float inner = s.coneRad - s.falloffRad;
+  if (angle <= inner) return 1.0f;
+  const float t = (s.coneRad - angle) / s.falloffRad;
+  return t * t * (3.0f - 2.0f * t);
 }
 
 inline Vec3 sunRadiance(const LightSpec& s) {  // irradiance = radiance * pi sin^2(angular radius)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include "core/cdf.h"
 #include "core/number_text.h"
@@ -49,8 +50,16 @@ void LightSet::requireSquares() const {
   }
 }
 
-void LightSet::setPickProbabilities(const std::vector<double>& weights) {
+// Random numbers have 24 bits: a light of a smaller share beside a sun would never be picked, or
+// too often. So each that shines has four of them at least, and all shares are multiples of one.
+void LightSet::setPickProbabilities(std::vector<double> weights) {
+  constexpr double kSteps = 0x1p24;
+  const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+  const double least = sum * std::min(4.0 / kSteps, 0.25 / static_cast<double>(weights.size() + 1));
+  for (double& w : weights) w = w > 0.0 ? std::max(w, least) : w;
   pickCdf_ = makeCdf<float>(weights);
+  for (float& upTo : pickCdf_)
+    upTo = static_cast<float>(std::round(double{upTo} * kSteps) / kSteps);
   for (size_t i = 0; i < lights_.size(); ++i)
     lights_[i].pickProbability = cdfShare<float>(pickCdf_, i);
 }
@@ -138,7 +147,7 @@ double falloffIntegral(const LightSpec& s) {
   constexpr int kSteps = 256;
   for (int i = 0; i < kSteps; ++i) {
     const double angle = (i + 0.5) / kSteps * double{s.coneRad};
-    integral += double{spotFalloff(s, float(std::cos(angle)))} * std::sin(angle) *
+    integral += double{spotFalloff(s, versine(float(angle)))} * std::sin(angle) *
                 double{s.coneRad} / kSteps;
   }
   return integral;

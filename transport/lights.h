@@ -144,7 +144,7 @@ class LightSet {
   };
   void addAreaLights();
   void addSpecLights();
-  void setPickProbabilities(const std::vector<double>& weights);
+  void setPickProbabilities(std::vector<double> weights);
   Vec3 radianceAtInfinity(size_t light, Vec3 direction, float& pdf) const;
   float texelPdf(const Light& light, size_t x, uint32_t y) const;
   Vec3 sampleDirection(const Light& light, float u, float v, Vec3& radiance, float& pdf) const;

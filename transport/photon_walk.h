@@ -74,12 +74,14 @@ class PhotonWalk {
     const float survive = bsdf.reflectance();
     if (rng_.next() >= survive) return;
     const LobeChoice lobes = chooseLobes(bsdf, rng_);
-    if (rough_ + specular_ == 0) beganAtPerfectMirror_ = lobes.specular() && bsdf.specularIsDelta();
+    const bool first = rough_ + specular_ == 0;
     const bool last = lobes.specular() ? ++specular_ > kMaxSpecular : ++rough_ >= maxBounces_;
+    if (!lobes.specular()) specular_ = 0;  // the limit is that between two rough vertices
     BsdfSample sample;
     Ray next;
     if (last || !sampleNextRay(accel, bsdf, lobes.group, Transport::Photons, rng_, sample, next))
       return;
+    if (first) beganAtPerfectMirror_ = lobes.specular() && sample.pdf == 0.0f;
     const Vec3 onward = flux_ * sample.weight * (1.0f / (lobes.probability * survive));
     if (!isFinite(onward)) {
       fate_.finite = false;

@@ -239,7 +239,7 @@ TEST(Eliminate, TooManyWantedSaysWhatToRerun) {
   } catch (const InputError& e) {
     const std::string text = e.what();
     EXPECT_NE(text.find("100 candidates"), std::string::npos) << text;
-    EXPECT_NE(text.find("rerun vpl-place -n at least 1000"), std::string::npos) << text;
+    EXPECT_NE(text.find("rerun vpl-place -n 4000"), std::string::npos) << text;
   }
   EXPECT_THROW(keepRowsOf(cloud, keep(0)), UsageError);
 }

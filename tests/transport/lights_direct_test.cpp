@@ -258,6 +258,28 @@ TEST(DirectLight, SpotFadesAcrossItsRim) {
   EXPECT_FALSE(lit.lights.sampleDirect(0, {0, 8, 0}, 0.5f, 0.5f, s));  // behind the spot
 }
 
+// Cosines of such angles are 1 or the float below it.
+TEST(DirectLight, NarrowSpotsFadeAcrossTheirRim) {
+  LightSpec spec;
+  spec.type = LightType::Spot;
+  spec.position = {0.3f, 4, 0.2f};
+  spec.emission = Vec3(16);
+  spec.coneRad = spec.falloffRad = 2e-4f;
+  spec.direction = normalize({0.3f, -1, 0.1f});
+  const Lit lit(withLight(spec));
+  const Basis across(spec.direction);
+  const float far = 4.0f / -spec.direction.y;
+  for (int k = 0; k < 20; ++k) {
+    const float angle = 1e-5f * float(k), t = 1.0f - angle / spec.coneRad;
+    const Vec3 at = spec.position + (spec.direction + across.s * angle) * far;
+    DirectSample s;
+    const bool lights = lit.lights.sampleDirect(0, at, 0.5f, 0.5f, s);
+    const float share =
+        lights ? s.radianceOverPdf.x * lengthSquared(at - spec.position) / 16.0f : 0.0f;
+    EXPECT_NEAR(share, t * t * (3.0f - 2.0f * t), 0.02f) << k;
+  }
+}
+
 TEST(DirectLight, SunGivesTheStatedIrradianceAtAnyWidth) {
   for (const float diameterDeg : {0.0f, 0.001f, 0.01f, 0.1f, 0.53f, 2.0f, 30.0f, 120.0f}) {
     LightSpec spec;

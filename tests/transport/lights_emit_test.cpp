@@ -149,6 +149,28 @@ TEST(Emission, SunOnTheFloorIsIrradianceTimesCosine) {
   expectClose(arriving, Vec3(5, 4, 3) * (24.0f * -scene.lights[0].direction.y), 0.01f);
 }
 
+// A bulb beside a sun has a share below that of one random number. It is picked all the same, and
+// as often as its probability says, before the sun and behind it.
+TEST(Emission, DimLightsBesideASunArePicked) {
+  for (const size_t place : {0u, 1u}) {
+    Scene scene = floorScene();
+    for (size_t i = 0; i < 2; ++i) {
+      LightSpec s = point();
+      s.emission = Vec3(i == place ? 1.0f : 1e9f);
+      scene.lights.push_back(s);
+    }
+    const Accelerator accel(scene);
+    const LightSet lights(accel);
+    int picked = 0;
+    for (int k = 0; k < 1 << 24; ++k) {
+      float probability = 0.0f;
+      picked += lights.pick(float(k) * 0x1p-24f, probability) == place;
+    }
+    EXPECT_GT(picked, 0) << place;
+    EXPECT_EQ(float(picked) * 0x1p-24f, lights.pickProbability(place)) << place;
+  }
+}
+
 TEST(Emission, PicksFollowPower) {
   Scene scene = floorScene();
   for (const float intensity : {1.0f, 0.0f, 3.0f}) {

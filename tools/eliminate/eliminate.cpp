@@ -16,7 +16,7 @@ void requireEnough(size_t candidates, uint64_t count) {
   if (candidates > INT32_MAX) throw InputError("more than 2^31 - 1 candidates; place fewer");
   if (count <= candidates) return;
   throw InputError("asked to keep " + std::to_string(count) + " of " + std::to_string(candidates) +
-                   " candidates; rerun vpl-place -n at least " + std::to_string(count * 20) +
+                   " candidates; rerun vpl-place -n " + std::to_string(count * 20) +
                    " (20 to 40 x " + std::to_string(count) + ")");
 }
 

@@ -275,6 +275,20 @@ PhotonScatter::PhotonScatter(const EstimateInputs& in, float radius, uint64_t ph
       squareUnit_(std::ldexp(1.0, -std::min(36, 54 - static_cast<int>(std::bit_width(photons))))),
       coverage_(in.vpls.position, in.vpls.normal, reachOf(in.vpls, radius), in.accel) {}
 
+namespace {
+
+// Up or down, so that the mean over hits is the value: squares of photons that a guide makes faint
+// are less than a unit. The place of the hit is the random number.
+int64_t roundedAtRandom(double value, Vec3 at) {
+  const double low = std::floor(value);
+  const uint64_t key =
+      mix64(mix64(mix64(std::bit_cast<uint32_t>(at.x)) ^ std::bit_cast<uint32_t>(at.y)) ^
+            std::bit_cast<uint32_t>(at.z));
+  return static_cast<int64_t>(low) + (double{toUnitFloat(key)} < value - low ? 1 : 0);
+}
+
+}  // namespace
+
 void PhotonScatter::deposit(uint32_t vpl, const PhotonHit& hit, Vec3 flux, PhotonSums& sums) const {
   VplSum& s = sums.vpl[vpl];
   for (size_t c = 0; c < 3; ++c) {
@@ -284,9 +298,10 @@ void PhotonScatter::deposit(uint32_t vpl, const PhotonHit& hit, Vec3 flux, Photo
     if (hit.onlyPhotons) addChecked(s.onlyPhotons[c], units);
   }
   const double relative = double{mean(flux)} * perPhotonPower_;
-  addChecked(s.squares, std::llrint(relative * relative / squareUnit_));
+  addChecked(s.squares, roundedAtRandom(relative * relative / squareUnit_, hit.point.position));
   const double weight = emitPointWeights_.empty() || hit.onlyPhotons ? 1.0 : emitPointWeights_[vpl];
-  sums.points.offer(vpl, relative * weight, hit.point);
+  // In watts, as paths offer theirs.
+  sums.points.offer(vpl, double{mean(flux)} * weight, hit.point);
   if (groups_ > 0) {
     GroupSum& group = sums.groups[size_t{vpl} * groups_ + hit.group];
     for (size_t c = 0; c < 3; ++c) {

@@ -15,11 +15,12 @@ using namespace methods::estimate::both;
 
 // The Cornell box lit by its area light and by a sky whose photons hardly ever find it, because
 // they cover a much larger box.
-World lampAndSky() {
+World lampAndSky(float scale = 1.0f) {
   Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "cornell/scene.toml");
+  for (Material& m : scene.materials) m.emission *= scale;
   LightSpec sky;
   sky.type = LightType::Environment;
-  sky.emission = Vec3(3.0f);
+  sky.emission = Vec3(3.0f * scale);
   scene.lights.push_back(sky);
   const Vec3 size = scene.bounds.extent();
   scene.bounds.extend(size * -2.0f);
@@ -90,10 +91,21 @@ TEST(Both, IsAsGoodAsTheBetterOfTheTwo) {
 }
 
 // A point light above a mirror: no path finds its reflected light, so photons contribute it all.
-TEST(Both, KeepsLightThatOnlyPhotonsFind) {
+// The floor of the second scene mixes the mirror with rough metal, over which paths find the light.
+class LightOfPhotons : public testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(Both, LightOfPhotons, testing::Bool());
+TEST_P(LightOfPhotons, IsKept) {
   Scene scene;
   Material mirror = lambert(Vec3(0.0f));
   mirror.phong().mirror = Vec3(0.9f);
+  if (GetParam()) {
+    Material metal;
+    ConductorModel rough;
+    rough.roughness = Roughness(Scalar(0.1f));
+    metal.model = rough;
+    scene.materials = {mirror, metal};
+    mirror.model = MixModel{0, 1, 0.3f};
+  }
   addSquare(scene, {-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, mirror);               // floor
   addSquare(scene, {-1, 2, -1}, {2, 0, 0}, {0, 0, 2}, lambert(Vec3(0.8f)));  // ceiling
   LightSpec point;
@@ -121,6 +133,19 @@ TEST(Both, KeepsLightThatOnlyPhotonsFind) {
       lightVpls(world, vpls, {{"method", "both"}, {"photons", "400k"}, {"irradiance-error", "0"}});
   EXPECT_GT(both.paths, 0u);
   EXPECT_NEAR(totalFlux(both.table) / photons, 1.0, 0.01);
+}
+
+// Where VPLs shine from does not depend on the unit of light: photons and paths offer their hits in
+// the same one.
+TEST(Both, EmissionPointsDoNotDependOnTheUnitOfLight) {
+  const auto pointsAt = [](float scale) {
+    const World world = lampAndSky(scale);
+    const VplTable vpls = keptVpls(world, {{"count", "100"}}, {{"count", "2k"}});
+    const EstimateResult both = lightVpls(world, vpls, {{"method", "both"}, {"photons", "60k"}});
+    EXPECT_GT(both.paths, 0u);
+    return both.table.emitPosition;
+  };
+  EXPECT_EQ(pointsAt(1.0f), pointsAt(0x1p20f));
 }
 
 TEST(Both, NoLightLeaksIntoAClosedRoom) {

@@ -100,7 +100,7 @@ Image develop(const Film& size, const FilmOptions& options, FilmState& state, Fi
   std::vector<BothLights> redistributed;
   if (options.redistributeFireflies)
     film.redistributed = redistributed =
-        redistributeFireflies(film, options.only, size.width, &groupsRedistributed);
+        redistributeFireflies(film, options.only, shown.width, &groupsRedistributed);
   addRadiance(film, options.only, image);
   addGroups(state.groups, options.groups, film.perSample, groupsRedistributed, image);
   for (const Layer* layer : options.layers) addLayer(*layer, film, image);

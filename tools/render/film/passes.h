@@ -15,8 +15,9 @@
 // is 1 / K whatever it finds and however many samples a tile has. (Weights by the number of samples
 // would be biased: a pixel that met no bright sample by chance would get no others, and stay too
 // dark.) The error above stays valid: the m_k - E[m_k] are steps of a martingale, so they are
-// uncorrelated, though of different variances. Only --target-error lets the estimate end the work.
-// It is one number for the whole image, on which a single pixel has next to no influence.
+// uncorrelated, though of different variances. Only --target-error lets the estimate end the work:
+// an image that has met no firefly yet tells a small error and ends early, one that has goes on, so
+// that rare light is too dark on average (theory.md).
 #pragma once
 
 #include <cmath>

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "tools/render/integrator/integrator.h"
+#include "tools/render/stage_options.h"
 #include "tools/render/tile/film_rays.h"
 #include "tools/render/tile/tile_integrator.h"
 
@@ -30,6 +31,13 @@ constexpr SwitchOption allocateOption(std::string_view help) {
                   switchOption("allocate", "on", help));
 }
 inline constexpr OptionKey<bool> kAllocateKey = allocateOption({}).key();
+
+// Samples a pixel to which preparations are fitted. A budget of time or error has no number of its
+// own, and these photons are made once for all of its passes.
+inline constexpr uint64_t kMaxPreparedSpp = 256, kMaxCausticPhotons = 16000000;
+inline uint64_t preparedSpp(const Values& options) {
+  return std::min(options[kSppOption], kMaxPreparedSpp);
+}
 
 // Adds the parts for direct light, with `lightRays` shadow rays from each sample. Adds nothing if
 // the image shows only indirect light.

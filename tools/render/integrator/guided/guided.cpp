@@ -51,6 +51,13 @@ uint64_t raysEach(const IntegratorInputs& in, const Values& options) {
                                 (kPathsPerRay * std::max<size_t>(1, in.lit.size())));
 }
 
+// For each sample, so that the noise of photons falls with --spp as all other noise does.
+constexpr uint64_t kCausticPhotons = 4;
+uint64_t causticPhotons(const IntegratorInputs& in, const Values& options) {
+  const uint64_t photons = kCausticPhotons * in.pixels() * preparedSpp(options);
+  return options[kSppOption] > kMaxPreparedSpp ? std::min(kMaxCausticPhotons, photons) : photons;
+}
+
 // Objects that live as long as the integrator. Each may borrow from those before it.
 struct Parts {
   std::unique_ptr<const SpatialLightSampler> spatialLights;
@@ -59,9 +66,7 @@ struct Parts {
 };
 
 Integrator make(const IntegratorInputs& in, const Values& options) {
-  constexpr unsigned kLightRays = 8;  // sets the number of rays that tiles learn from
-  // Per sample, so that the noise of photons falls with --spp as all other noise does.
-  constexpr uint64_t kCausticPhotons = 4;
+  constexpr unsigned kLightRays = 8;        // sets the number of rays that tiles learn from
   constexpr uint64_t kProbeRays = 1 << 18;  // limit for a cost estimate
   const bool indirect = in.only != Only::Direct;
   const auto vpls = std::max<uint64_t>(1, in.lit.size());
@@ -89,8 +94,8 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
       controlled || in.only != Only::Indirect ? filmRays.all() : FilmPoints{};
   if (controlled) tile.control = makeControlVariate(in, filmPoints);
   addDirectLight(in, options, filmRays, filmPoints, kLightRays, tile);
-  tile.caustics = makeCaustics(in, kCausticPhotons * samplesOf(in, options),
-                               tile.raysEach * options[kSppOption], maxBouncesOf(options));
+  tile.caustics = makeCaustics(in, causticPhotons(in, options),
+                               tile.raysEach * preparedSpp(options), maxBouncesOf(options));
   const CausticStats caustics = tile.caustics ? tile.caustics->stats() : CausticStats{};
   parts->integrator =
       std::make_unique<const TileIntegrator>(in.accel, in.lights, std::move(tile), in.only);

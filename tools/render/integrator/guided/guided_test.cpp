@@ -90,6 +90,17 @@ TEST(Guided, FurnaceIsExact) {
   EXPECT_NEAR(meanOf(image), 2.0, 0.01);  // Le / (1 - rho)
 }
 
+// A budget has no number of samples, to which photons for light over mirrors could be fitted.
+TEST(Guided, EndsByPasses) {
+  Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "cornell/scene.toml");
+  scene.film = {8, 8};
+  scene.materials[0].phong().mirror = Vec3(0.5f);
+  const World world(std::move(scene));
+  const VplTable lit = fewLit(world);
+  const FilmStats stats = renderVpls(world, lit, {{"integrator", "guided"}, {"passes", "2"}}).stats;
+  EXPECT_GT(stats.indirect, 0.0);
+}
+
 TEST(Guided, ClosedRoomsStayDark) {
   const World world("test/two-rooms.toml");
   const VplTable lit = fewLit(world);

@@ -112,14 +112,12 @@ void addTileCompensation(const IntegratorInputs& in, const Values& options,
 }
 
 uint64_t causticPhotons(const IntegratorInputs& in, const Values& options) {
-  constexpr uint64_t kMaxPhotons = 16000000;  // they take seconds, in each shard
   return in.only == Only::Direct
              ? 0
-             : std::min(kMaxPhotons, in.pixels() * options[kCausticPhotonsOption]);
+             : std::min(kMaxCausticPhotons, in.pixels() * options[kCausticPhotonsOption]);
 }
 
 Integrator make(const IntegratorInputs& in, const Values& options) {
-  constexpr uint64_t kMaxSpp = 256;  // upper limit, as spp of a budget may be unlimited
   // Direct light needs no VPLs, so their clamp and kind are arbitrary.
   const bool indirect = in.only != Only::Direct;
   const float clamp = indirect ? options.real32(kClampOption) : 1.0f;
@@ -159,9 +157,9 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
                                                       tile.spatialLights, in.only);
   }
   if (indirect) tile.reuse = static_cast<unsigned>(options[kReuseOption]);
-  tile.caustics = makeCaustics(in, causticPhotons(in, options),
-                               tile.raysEach * std::min(options[kSppOption], kMaxSpp),
-                               /*bounces=*/0);  // VPLs carry the light of further bounces
+  tile.caustics =
+      makeCaustics(in, causticPhotons(in, options), tile.raysEach * preparedSpp(options),
+                   /*bounces=*/0);  // VPLs carry the light of further bounces
   const CausticStats caustics = tile.caustics ? tile.caustics->stats() : CausticStats{};
   parts->integrator =
       std::make_unique<const TileIntegrator>(in.accel, in.lights, std::move(tile), in.only);

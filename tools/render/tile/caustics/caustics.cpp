@@ -161,7 +161,6 @@ void Caustics::trace(const Photon& photon, Rng& rng, Splats& out) const {
     accel_.closestHit(next.origin, next.direction, hit);
     if (hit.triangle == kNone) return;
     const Bsdf bsdf(accel_.scene(), hit);
-    if (specularBounces == 0) hidden = !photon.hittable && bsdf.specularIsDelta();
     if (specularBounces > 0 && bsdf.hasRough()) {
       connect(bsdf.point(), flux * bsdf.photonShadingFactor(), photon, out);
       if (hidden && bounces_ > 0) followBounces(bsdf, flux, photon, rng, out);
@@ -171,7 +170,10 @@ void Caustics::trace(const Photon& photon, Rng& rng, Splats& out) const {
     if (!sampleNextRay(accel_, bsdf, LobeGroup::Specular, Transport::Photons, rng, sample, next))
       return;
     flux *= sample.weight;
-    if (specularBounces == 0) continue;
+    if (specularBounces == 0) {
+      hidden = !photon.hittable && sample.pdf == 0.0f;  // by a perfect lobe
+      continue;
+    }
     const float survive = std::min(1.0f, maxComponent(sample.weight));
     if (rng.next() >= survive) return;
     flux *= 1.0f / survive;
