@@ -34,7 +34,7 @@ class TooSlow(unittest.TestCase):
         context = mock.Mock(size=size)
         context.configuration.return_value.but.return_value = mock.Mock(vpls=10_000, spp=2)
         run = field.Field(context)
-        rows = [{"vpls": 1000, "render_cpu_s": 0.9}]  # 9 s at 10,000 VPLs, 4.5 s a sample
+        rows = [{"vpls": n, "render_cpu_s": 0.9 * n / 1000} for n in (1000, 10_000)]
         view = mock.Mock()
         self.assertIsNone(run.at_equal_time(view, "all", "none", rows))
         self.assertEqual(len(run.skipped), 1)

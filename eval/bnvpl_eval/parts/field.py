@@ -166,11 +166,11 @@ def fitting_spp(cpu_s: Callable[[int], float], few: int, time_s: float) -> int:
 
 
 def expected_s(rows: list[dict[str, Any]], count: int) -> float:
-    """CPU seconds of the next count, if the time grows as before; in proportion after one row."""
+    """CPU seconds of the next count, if the time grows as before; after one row it may stay."""
     if not rows:
         return 0.0
     last = rows[-1]
-    exponent = 1.0
+    exponent = 0.0
     if len(rows) > 1:
         before = rows[-2]
         exponent = math.log(last["render_cpu_s"] / before["render_cpu_s"]) / math.log(
