@@ -123,7 +123,7 @@ def draw(axes: Axes, plot: dict[str, Any]) -> list[Line2D]:
     set_ticks(axes.xaxis, plot["x_log"])
     set_ticks(axes.yaxis, plot["y_log"])
     for s, line in zip(plot["series"], lines, strict=True):
-        if s["error"]:
+        if any(s["error"]):
             bars = [error or math.nan for error in s["error"]]  # an error of 0 has no bar
             look = {"fmt": "none", "ecolor": line.get_color(), "elinewidth": 1, "capsize": 2.5}
             axes.errorbar(s["x"], s["y"], bars, **look)

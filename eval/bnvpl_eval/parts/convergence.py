@@ -39,7 +39,7 @@ def series(
         "label": label,
         "x": xs,
         "y": ys,
-        "error": [row.get("rmse_error", 0.0) if y == "rmse_over_mean" else 0.0 for row in rows],
+        "error": [row.get("rmse_error", 0.0) for row in rows] if y == "rmse_over_mean" else [],
     }
     if len(xs) > 1:
         made["slope"] = slope(xs, ys)
