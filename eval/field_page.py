@@ -18,7 +18,7 @@ from bnvpl_eval import settings
 from rooms_page import put
 
 PAGE = settings.ROOT / "docs/field.md"
-GROWTH = "field-growth-sponza"  # id of the plot
+GROWTH = "field-growth-cornell"  # id of the plot
 COMPENSATIONS = ("none", "near-field")  # the second is the default of vpl-render
 Row = dict[str, Any]
 
@@ -60,11 +60,11 @@ def table(results: list[Row]) -> str:
             cells.append(f"**{text}**" if id(here) in best else text)
         equal = [r for r in rows if r["gather"] == gather and r["at"] == "equal VPLs"]
         rays = [r["shadow_rays"] for r in equal if int(r["vpls"]) == most]
-        cells.append(f"{sum(rays) / len(rays):.0f}" if rays else "-")
         if all(cell == "-" for cell in cells):
             too_slow.append(gather)
-        else:
-            lines.append("| " + " | ".join([gather, *cells]) + " |")
+            continue
+        cells.append(f"{sum(rays) / len(rays):.0f}" if rays else "-")
+        lines.append("| " + " | ".join([gather, *cells]) + " |")
     left_out = f"\n\nToo slow for this time: {', '.join(too_slow)}." if too_slow else ""
     return "\n".join(lines) + left_out
 
