@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Writes the table and the plot of docs/field.md from results of `make -C eval field`.
+"""Writes the table of docs/field.md from results of `make -C eval field`.
 
-    eval/field_page.py build/eval/field --many build/eval/field-many
+    eval/field_page.py build/eval/field
 
 A row for each gather: relMSE of the indirect light of each scene at equal time, without
 compensation and with the default one, and shadow rays at as many VPLs.
@@ -13,12 +13,10 @@ import json
 from pathlib import Path
 from typing import Any
 
-import write_docs
 from bnvpl_eval import settings
 from rooms_page import put
 
 PAGE = settings.ROOT / "docs/field.md"
-GROWTH = "field-growth-cornell"  # id of the plot
 COMPENSATIONS = ("none", "near-field")  # the second is the default of vpl-render
 Row = dict[str, Any]
 
@@ -74,13 +72,10 @@ def main() -> None:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("folder", type=Path, help="of results.json")
-    parser.add_argument("--many", type=Path, help="folder of SIZE=many, for the plot of times")
     arguments = parser.parse_args()
     found = json.loads((arguments.folder / "results.json").read_text())
     made = f"<!-- tools of {found['provenance']['commit']}, {found['provenance']['date']} -->"
     put(PAGE, "field", f"{table(found['results'])}\n\n{made}")
-    if arguments.many:
-        write_docs.write_plots(arguments.many, [GROWTH])
 
 
 if __name__ == "__main__":

@@ -20,6 +20,9 @@ inline constexpr WholeOption kEmitPointsOption = wholeOption(
     "emission points of each VPL, drawn in proportion to the light that leaves its surface; 0: it "
     "emits from its position");
 
+// Identifies a hit by its place. Hits are random points, so that it can serve as a random number.
+uint64_t placeHash(Vec3 p);
+
 // Weighted reservoir of one hit (Efraimidis & Spirakis 2006): each hit draws the key -ln(u) /
 // weight, and the smallest key wins, so a hit wins with a probability proportional to its weight.
 // Reservoirs can be merged in any order, so threads, checkpoints and shards give the same result.

@@ -278,13 +278,11 @@ PhotonScatter::PhotonScatter(const EstimateInputs& in, float radius, uint64_t ph
 namespace {
 
 // Up or down, so that the mean over hits is the value: squares of photons that a guide makes faint
-// are less than a unit. The place of the hit is the random number.
+// are less than a unit.
 int64_t roundedAtRandom(double value, Vec3 at) {
   const double low = std::floor(value);
-  const uint64_t key =
-      mix64(mix64(mix64(std::bit_cast<uint32_t>(at.x)) ^ std::bit_cast<uint32_t>(at.y)) ^
-            std::bit_cast<uint32_t>(at.z));
-  return static_cast<int64_t>(low) + (double{toUnitFloat(key)} < value - low ? 1 : 0);
+  const bool up = double{toUnitFloat(mix64(placeHash(at)))} < value - low;
+  return static_cast<int64_t>(low) + (up ? 1 : 0);
 }
 
 }  // namespace

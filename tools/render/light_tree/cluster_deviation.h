@@ -45,7 +45,7 @@ class DeviationModel {
         axis_(n.axis),
         intensity_(n.intensity),
         size_(length(n.bounds.upper - n.bounds.lower)),
-        spread_(length(n.centres().extent())),
+        spread_(Kind::fromCentre ? size_ : length(n.centres().extent())),
         closest2_(larger(0.25f * size_ * size_, std::numeric_limits<float>::min())),
         clamp2_(n.clamp2),
         sinHalfAngle_(n.sinHalfAngle),
@@ -72,6 +72,7 @@ class DeviationModel {
  private:
   static float clamp01(float a) { return larger(a < 1.0f ? a : 1.0f, 0.0f); }
   Vec3 lower_, upper_, middle_, axis_, intensity_;
+  // Diagonals of the box of what shines, and of the VPLs' centres.
   float size_, spread_, closest2_, clamp2_, sinHalfAngle_, normalSpread_;
 };
 

@@ -59,8 +59,11 @@ void ShadowQueue::add(ReceiverPacket& p, const VplDraw& vpl, uint32_t cluster, f
   d.packet = &p;
   d.at = vpls_.position[vpl.index];
   const uint32_t lanes = withKind(vpls_.kind, [&](auto kind) {
-    if constexpr (!kind.fromCentre) return integrate(p, vpl.index, d.transfer);
-    return geometryOfPacket<decltype(kind)>(vpls_, vpl.index, p, d.transfer, d.clampLoss);
+    if constexpr (kind.fromCentre) {
+      return geometryOfPacket<decltype(kind)>(vpls_, vpl.index, p, d.transfer, d.clampLoss);
+    } else {
+      return integrate(p, vpl.index, d.transfer);
+    }
   });
   if (lanes == 0) return removeLast();
   d.light = vpls_.intensity[vpl.index] * vpl.weight;
