@@ -106,7 +106,8 @@ def draw(axes: Axes, plot: dict[str, Any]) -> list[Line2D]:
             color=LIGHT[i % len(LIGHT)],
             linewidth=1.6,
             linestyle="--" if s["dash"] else "-",
-            marker=MARKERS[i % len(MARKERS)],
+            # A colour that comes again has another marker.
+            marker=MARKERS[(i + i // len(LIGHT)) % len(MARKERS)],
             markersize=6,
             markeredgecolor=PAPER,
             markeredgewidth=0.7,
