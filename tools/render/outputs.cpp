@@ -188,6 +188,7 @@ void reportPasses(const PassesDone& passes, const Values& options, Summary& summ
                 passes.error, static_cast<unsigned long long>(passes.passes), ofSpp.c_str(),
                 options[kAdaptiveOption] ? "" : " --adaptive off");
   summary.add("passes", passes.passes, line);
+  summary.add("pass_spp", passes.passSpp);
   summary.add("relative_error", passes.error);
   summary.add("passes_time_s", passes.timeS);
   summary.add("ended_by", passes.endedBy);
