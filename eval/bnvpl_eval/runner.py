@@ -7,12 +7,17 @@ its outputs: command, key, wall and CPU seconds, peak memory.
 
 import hashlib
 import json
+import math
 import os
 import re
+import resource
 import shutil
+import signal
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -52,6 +57,10 @@ class ToolFailed(SystemExit):
         self.message = message
 
 
+class TookTooLong(Exception):
+    """A run was stopped at the limit of CPU seconds that Runner.limited set."""
+
+
 @dataclass
 class Run:
     folder: Path
@@ -74,6 +83,7 @@ class Runner:
     # Commit, processor and date go into every run.json.
     provenance: dict[str, Any] = field(default_factory=dict)
     runs: dict[str, Run] = field(default_factory=dict)  # all requested runs, by key
+    limit_cpu_s: float = math.inf  # a run that needs more is stopped
     _files: dict[Path, str] = field(default_factory=dict)
     # Time and size of each tool when it was first used.
     _tools: dict[Path, tuple[Any, ...]] = field(default_factory=dict)
@@ -108,7 +118,7 @@ class Runner:
                 ]
             ).encode()
         )
-        if key in self.runs:
+        if key in self.runs and self.runs[key].cpu_s <= self.limit_cpu_s:
             return self.runs[key]
         folder = self.cache / key
         if not (folder / "run.json").is_file():
@@ -119,8 +129,19 @@ class Runner:
                     f"eval: {folder / name}: missing from the cache; delete {folder} and rerun"
                 )
         run = Run(folder, json.loads((folder / "run.json").read_text()))
+        if run.cpu_s > self.limit_cpu_s:
+            raise TookTooLong
         self.runs[key] = run
         return run
+
+    @contextmanager
+    def limited(self, cpu_s: float) -> Iterator[None]:
+        """Within it, runs that need more CPU seconds raise TookTooLong, also if they are cached."""
+        self.limit_cpu_s = cpu_s
+        try:
+            yield
+        finally:
+            self.limit_cpu_s = math.inf
 
     def _require_unchanged(self, executable: Path) -> None:
         """Ends the program if a tool has changed, so that no report mixes two versions of it."""
@@ -134,6 +155,10 @@ class Runner:
                 "copy of "
                 "the tools (--bin)"
             )
+
+    def _set_limit(self) -> None:
+        seconds = math.ceil(self.limit_cpu_s)
+        resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 5))
 
     def _execute(
         self, key: str, executable: Path, words: list[str], inputs: dict[str, Path], folder: Path
@@ -152,13 +177,21 @@ class Runner:
             print(f"eval: {executable.name} {' '.join(words)}", file=sys.stderr, flush=True)
         begin = time.monotonic()
         with (partial / "log.txt").open("wb") as log:
-            child = subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT, cwd=ROOT)
+            child = subprocess.Popen(
+                command,
+                stdout=log,
+                stderr=subprocess.STDOUT,
+                cwd=ROOT,
+                preexec_fn=self._set_limit if math.isfinite(self.limit_cpu_s) else None,
+            )
             _, status, usage = os.wait4(child.pid, 0)
             child.returncode = os.waitstatus_to_exitcode(status)
         wall = time.monotonic() - begin
         if child.returncode != 0:
             text = (partial / "log.txt").read_text(errors="replace").strip()
             shutil.rmtree(partial)
+            if child.returncode == -signal.SIGXCPU:
+                raise TookTooLong
             raise ToolFailed(command, child.returncode, text)
         record = {
             "tool": executable.name,

@@ -18,7 +18,10 @@ class FittingSamples(unittest.TestCase):
         self.assertEqual(self.fitting(0.0, 0.5, 4.0), 8)
 
     def test_preparations_may_take_nearly_all_of_the_time(self) -> None:
-        self.assertEqual(self.fitting(3.7, 0.1, 4.0), 3)
+        self.assertEqual(self.fitting(3.1, 0.3, 4.0), 3)
+
+    def test_a_time_that_is_close_to_the_wanted_one_will_do(self) -> None:
+        self.assertEqual(self.fitting(3.7, 0.1, 4.0), 4)  # 4.1 s; 3 samples take 4.0 s
 
     def test_fewer_samples_than_the_first_trial(self) -> None:
         self.assertEqual(self.fitting(0.0, 4.0, 4.0), 1)
@@ -39,6 +42,18 @@ class TooSlow(unittest.TestCase):
         self.assertIsNone(run.at_equal_time(view, "all", "none", rows))
         self.assertEqual(len(run.skipped), 1)
         context.runner.run.assert_not_called()
+
+    def test_what_exceeds_the_limit_is_left_out_after_one_trial(self) -> None:
+        size = {"vpls": [1000, 10_000], "candidates_per_vpl": 10, "limit_s": 3.0}
+        context = mock.MagicMock(size=size)
+        run = field.Field(context)
+        with (
+            mock.patch.object(field.pipeline, "lit"),
+            mock.patch.object(field.pipeline, "image", side_effect=field.TookTooLong) as image,
+        ):
+            self.assertEqual(run.at_equal_vpls(mock.Mock(), "all"), [])
+        self.assertEqual((image.call_count, len(run.skipped)), (1, 1))
+        context.runner.limited.assert_called_once_with(3.0)
 
 
 if __name__ == "__main__":

@@ -6,11 +6,12 @@ import unittest
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-from bnvpl_eval.runner import Run, Runner, scene_key  # noqa: E402 (after the path that it needs)
+from bnvpl_eval.runner import Run, Runner, TookTooLong, scene_key  # noqa: E402 (after the path that it needs)
 
 TOOL = """#!/bin/sh
 # copies its input behind a line with its options; every run is one line of calls.log
 echo x >> "{log}"
+while [ "$2" = endless ]; do :; done
 [ "$2" = fail ] && {{ echo "made to fail"; exit 3; }}
 {{ echo "$2"; cat "$1"; }} > "$3"
 """
@@ -50,6 +51,18 @@ class Caching(unittest.TestCase):
         self.tool.write_text(self.tool.read_text() + "# another version\n")
         folders.add(self.run_tool().folder)
         self.assertEqual((self.calls(), len(folders)), (4, 4))
+
+    def test_a_run_ends_at_its_limit(self) -> None:
+        runner = Runner(self.folder, self.folder / "cache", quiet=True)
+        with self.assertRaises(TookTooLong), runner.limited(1):
+            self.run_tool("endless", runner)
+        self.assertEqual(list((self.folder / "cache").iterdir()), [])
+        with runner.limited(1):
+            self.assertGreater(self.run_tool("a", runner).cpu_s, 0.0)
+        with self.assertRaises(TookTooLong), runner.limited(0):
+            self.run_tool("a", runner)
+        self.run_tool("a", runner)
+        self.assertEqual(self.calls(), 2)
 
     def test_a_changed_product_reruns_what_follows(self) -> None:
         runner = Runner(self.folder, self.folder / "cache", quiet=True)

@@ -13,7 +13,7 @@ from typing import Any
 
 from .. import measures, pipeline
 from ..context import Context
-from ..runner import ToolFailed
+from ..runner import TookTooLong, ToolFailed
 from ..settings import ROOT, View
 from ..tables import column, table
 from .convergence import series
@@ -22,6 +22,7 @@ NONE = "none"
 DEFAULT_GATHER = "tilecuts"  # the default of vpl-render, which a viewer shows first
 EQUAL_VPLS, EQUAL_TIME = "equal VPLs", "equal time"
 MAX_SPP = 1024  # at equal time
+CLOSE_ENOUGH = 0.05  # to the time, for a number of samples that has been run
 REFUSED = 2  # exit code of vpl-render
 SHAPES = (
     "Discs are VPLs, black or white squares receivers. A line is a shadow ray, a cross where it is "
@@ -106,10 +107,10 @@ class Field:
         return row
 
     def at_equal_vpls(self, view: View, gather: str) -> list[dict[str, Any]]:
-        """Rows for growing counts, up to that whose time would exceed the limit."""
+        """Rows for growing counts, up to the first whose time exceeds the limit."""
         rows: list[dict[str, Any]] = []
         for count in self.size["vpls"]:
-            if expected_s(rows, count) > self.size["limit_s"]:
+            if self.too_long(view, gather, count, rows):
                 self.skipped.append(f"{gather}, {count} VPLs, {view.scene.title}")
                 break
             row = self.judge(view, gather, NONE, count, self.size["spp"], EQUAL_VPLS)
@@ -118,24 +119,48 @@ class Field:
             rows.append(row)
         return rows
 
+    def too_long(self, view: View, gather: str, count: int, rows: list[dict[str, Any]]) -> bool:
+        """Whether the count needs more CPU seconds than the limit, by its growth or by a trial."""
+        limit_s: float = self.size["limit_s"]
+        if expected_s(rows, count) > limit_s:
+            return True
+        c = self.configuration(view, gather, NONE, count)
+        pipeline.lit(self.context.runner, view, c, 1)  # whose time does not count
+        try:
+            with self.context.runner.limited(limit_s):
+                self.unless_refused(
+                    gather, NONE, lambda: pipeline.image(self.context.runner, view, c, 1)
+                )
+        except TookTooLong:
+            return True
+        return False
+
     def leave_out(self, view: View, gather: str, compensate: str) -> None:
         self.skipped.append(f"{gather}, {compensate}, equal time, {view.scene.title}")
 
     def at_equal_time(
         self, view: View, gather: str, compensate: str, at_equal_vpls: list[dict[str, Any]]
     ) -> dict[str, Any] | None:
+        """The row of as many samples as fit into the time; None if one does not, or a refusal."""
         c = self.configuration(view, gather, compensate, self.size["equal_time_vpls"])
         if expected_s(at_equal_vpls, c.vpls) > c.spp * self.size["time_s"]:
             self.leave_out(view, gather, compensate)
             return None
 
+        runner, time_s = self.context.runner, self.size["time_s"]
+        pipeline.lit(runner, view, c, 1)
+
         def cpu_s(spp: int) -> float:
-            _, runs = pipeline.image(self.context.runner, view, c.but(spp=spp), 1)
+            with runner.limited(2.0 * spp * time_s):  # no half a sample fits into the time
+                _, runs = pipeline.image(runner, view, c.but(spp=spp), 1)
             return float(runs[-1].cpu_s)
 
-        spp = self.unless_refused(
-            gather, compensate, lambda: fitting_spp(cpu_s, c.spp, self.size["time_s"])
-        )
+        try:
+            spp = self.unless_refused(
+                gather, compensate, lambda: fitting_spp(cpu_s, c.spp, time_s)
+            )
+        except TookTooLong:
+            spp = 0
         if spp is None:
             return None
         if spp < 1:
@@ -161,7 +186,10 @@ def fitting_spp(cpu_s: Callable[[int], float], few: int, time_s: float) -> int:
     if few_s > time_s:
         return round(few * time_s / few_s)
     many = min(max(math.floor(few * time_s / few_s), 2 * few), MAX_SPP)
-    fitting = pipeline.samples_within(time_s, (few, few_s), (many, cpu_s(many)))
+    many_s = cpu_s(many)
+    if abs(many_s - time_s) < CLOSE_ENOUGH * time_s:
+        return many
+    fitting = pipeline.samples_within(time_s, (few, few_s), (many, many_s))
     return min(MAX_SPP, round(fitting))
 
 
