@@ -6,7 +6,9 @@ from pathlib import Path
 from unittest import mock
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-from bnvpl_eval.parts import field  # noqa: E402 (after the path that it needs)
+from bnvpl_eval import pipeline  # noqa: E402 (after the path that it needs)
+from bnvpl_eval.parts import field  # noqa: E402
+from bnvpl_eval.runner import TookTooLong  # noqa: E402
 
 
 class FittingSamples(unittest.TestCase):
@@ -48,8 +50,8 @@ class TooSlow(unittest.TestCase):
         context = mock.MagicMock(size=size)
         run = field.Field(context)
         with (
-            mock.patch.object(field.pipeline, "lit"),
-            mock.patch.object(field.pipeline, "image", side_effect=field.TookTooLong) as image,
+            mock.patch.object(pipeline, "lit"),
+            mock.patch.object(pipeline, "image", side_effect=TookTooLong) as image,
         ):
             self.assertEqual(run.at_equal_vpls(mock.Mock(), "all"), [])
         self.assertEqual((image.call_count, len(run.skipped)), (1, 1))
