@@ -17,10 +17,10 @@ import re
 import signal
 import sys
 from collections.abc import Callable, Iterable, Mapping
-from typing import Any, TypeVar
+from typing import Any, TypeVar, Union
 
 T = TypeVar("T")
-File = str | os.PathLike[str]
+File = Union[str, "os.PathLike[str]"]  # this way for Python 3.9, which nodes may have
 HEAD = 4096  # number of leading bytes that tell a file's kind
 
 

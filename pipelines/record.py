@@ -30,13 +30,13 @@ import socket
 import subprocess
 import sys
 import time
-from typing import Any
+from typing import Any, Union
 
 import output_guard
 
 SUFFIX = ".task.json"
 PR_SET_PDEATHSIG = 1
-Folder = str | os.PathLike[str]
+Folder = Union[str, "os.PathLike[str]"]
 
 
 def attempts(folder: Folder, name: str) -> list[dict[str, Any] | None]:

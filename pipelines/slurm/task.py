@@ -7,6 +7,8 @@ The task is queued again and resumes from its checkpoint when it nears its time 
 when its tool is killed, as often as the job allows. Slurm itself requeues it when a node fails.
 """
 
+from __future__ import annotations
+
 import json
 import os
 import pathlib
@@ -99,18 +101,26 @@ class Job:
         )
         if task["checkpoint"]:  # a task without a checkpoint would lose its work by stopping early
             signal.signal(signal.SIGUSR1, self.on_time_limit)
-        before = {"inputs": signature(task["inputs"])}
+        before = signature(task["inputs"])
         code = self.attempt.run([*task["command"], "--threads", str(self.threads)])
         if code == 0:
-            made = {
-                "inputs": before["inputs"] | signature(dependencies(task["depfile"])),
+            self.attempt.record["made"] = {
+                "inputs": self.learned(task["depfile"]) | before,
                 "outputs": signature(task["outputs"]),
             }
-            self.attempt.record["made"] = made
             self.attempt.save()
         elif self.shall_run_again(code):
             self.queue_again()
         return code
+
+    def learned(self, depfile: str) -> dict[str, list[int] | None]:
+        """Signatures of the files that only the depfile names; None where they changed meanwhile.
+
+        The command may have read what they held before, so the task is not up to date then.
+        """
+        start_ns = (self.attempt.record["start_s"] - 0.01) * 1e9  # clocks of files are coarse
+        found = signature(dependencies(depfile))
+        return {f: state if state and state[1] < start_ns else None for f, state in found.items()}
 
     def shall_run_again(self, code: int) -> bool:
         if self.attempt.stopped or "SLURM_JOB_ID" not in os.environ:

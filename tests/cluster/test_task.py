@@ -27,7 +27,9 @@ SLOW = "#!/bin/sh\ntouch $2.ready\nwhile :; do sleep 0.1; done\n"
 
 
 class TaskTest(SlurmTest):
-    def start_task(self, tool: str, retries: int = 2, **more: Any) -> subprocess.Popen[bytes]:
+    def start_task(
+        self, tool: str, retries: int = 2, inputs: tuple[str, ...] = (), **more: Any
+    ) -> subprocess.Popen[bytes]:
         """Starts task.py as job 9 for a tool of these tests."""
         saved = str(self.folder / "saved")
         task = {
@@ -35,9 +37,9 @@ class TaskTest(SlurmTest):
             "stage": "s",
             "after": [],
             "command": [tool, "--checkpoint", saved],
-            "inputs": [tool],
+            "inputs": [tool, *inputs],
             "outputs": [str(self.folder / "made")],
-            "depfile": "",
+            "depfile": str(self.folder / "made.d"),
             "checkpoint": saved,
         }
         (self.folder / "run").mkdir(exist_ok=True)
@@ -84,6 +86,24 @@ class TaskTest(SlurmTest):
         tool = self.program("late", LATE)
         for _ in range(30):  # the signal comes before or after the tool is known
             self.assertEqual(self.start_task(tool).wait(timeout=60), 128 + 15)
+
+    def test_inputs_that_change_while_the_tool_runs_make_its_outputs_stale(self) -> None:
+        """Whether the task or only its depfile names the input."""
+        for name, named in (("scene", True), ("texture", False)):
+            file = self.folder / name
+            file.write_text("as the tool read it\n")
+            os.utime(file, (1e9, 1e9))
+            change = f"[ -e {name}.changed ] || echo changed >> {name}; touch {name}.changed"
+            tool = self.program(
+                f"reads-{name}",
+                f"#!/bin/sh\ncd '{self.folder}'; echo run >> {name}.runs; {change}\n"
+                f"echo 'made: {file}' > made.d; touch made\n",
+            )
+            for runs in (1, 2, 2):
+                task = self.start_task(tool, inputs=(str(file),) if named else ())
+                self.assertEqual(task.wait(), 0)
+                done = (self.folder / f"{name}.runs").read_text()
+                self.assertEqual(done.count("run"), runs, name)
 
     def test_whole_tasks_go_on_from_their_checkpoints(self) -> None:
         """Stops a render, one whole task of the pipeline, near its time limit."""

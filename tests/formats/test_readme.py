@@ -88,6 +88,13 @@ class Readme(unittest.TestCase):
     def test_the_inputs(self) -> None:
         self.assertIn("\n\n" + inputs_block(history(self.image)) + "\n", self.text)
 
+    def test_the_manual_page_has_the_same_offsets(self) -> None:
+        page = (ROOT / "install/man/vpl.5.in").read_text()
+        shown = re.findall(r"^(\d+)\t([^\t]+)\t", page, re.M)
+        told = re.findall(r"^\| (\d+) \| ([^|]+) \|", self.text, re.M)
+        self.assertGreater(len(told), 18)
+        self.assertEqual(shown, told)
+
     def columns(self, file: Path) -> Any:
         code = re.findall(r"```python\n(.*?)```", self.text, re.DOTALL)[0]
         self.assertIn('"lit.vpl"', code)

@@ -4,7 +4,10 @@
 tests/pipeline/test_programs.py build/release/bin
 """
 
+import ast
+import importlib
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -79,6 +82,31 @@ class Programs(unittest.TestCase):
             *SMALL,
             *words,
         ]
+
+
+class Snakefile(unittest.TestCase):
+    def test_it_calls_functions_that_exist(self) -> None:
+        """Snakemake is not installed everywhere, so that its own test may be skipped."""
+        text = (SOURCE / "pipelines/Snakefile").read_text()
+        sys.path.insert(0, str(SOURCE / "pipelines"))
+        used = set(re.findall(r"\b(stages|stage_options)\.(\w+)", text))
+        self.assertGreater(len(used), 4)
+        for module, name in used:
+            found = importlib.import_module(module)
+            self.assertEqual(getattr(found, name).__module__, module, f"{module}.{name}")
+
+
+class Nodes(unittest.TestCase):
+    def test_their_programs_are_of_python_3_9(self) -> None:
+        """Annotations are not evaluated there; types with | at other places would be."""
+        for name in ("slurm/task.py", "record.py", "output_guard.py"):
+            tree = ast.parse((SOURCE / "pipelines" / name).read_text(), feature_version=(3, 9))
+            imports = [node for node in tree.body if isinstance(node, ast.ImportFrom)]
+            self.assertIn("__future__", [node.module for node in imports], name)
+            for node in tree.body:
+                if isinstance(node, ast.Assign):
+                    unions = [n for n in ast.walk(node) if isinstance(n, ast.BitOr)]
+                    self.assertEqual(unions, [], f"{name}:{node.lineno}")
 
 
 class Values(Programs):
