@@ -12,6 +12,15 @@ namespace bnvpl {
 // rest of its control group's limit (v1 or v2), and the rest of `ulimit -v`.
 uint64_t availableMemory();
 
+// Bytes of this process in memory, now and at most so far. getrusage() would tell the peak of the
+// program that started it where that was larger.
+uint64_t residentMemory();
+uint64_t peakMemory();
+
+// What control groups leave, of which the files of processes can be taken back. `root`: their
+// hierarchy, /sys/fs/cgroup. `groups`: the groups of a process, as /proc/self/cgroup names them.
+uint64_t groupsLeave(const fs::path& root, const fs::path& groups);
+
 // Throws MemoryError "WHAT needs about 60 GiB of memory, 21 GiB are available; CURE" if `bytes`
 // exceed availableMemory(). The estimate may be rough but must not exceed the actual use, so that
 // no work is refused that would have fitted.

@@ -118,12 +118,24 @@ void OutputFolder::open() {
     ::close(fd);
   }
   static std::atomic<unsigned> number{0};
-  const fs::path partial = place_.string() + ".partial-" + std::to_string(::getpid()) + "-" +
-                           std::to_string(number.fetch_add(1));
-  makeFolder(partial);
-  partial_ = partial;
-  lock_ = ::open(partial_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (lock_ >= 0) ::flock(lock_, LOCK_EX | LOCK_NB);
+  for (;;) {
+    const fs::path partial = place_.string() + ".partial-" + std::to_string(::getpid()) + "-" +
+                             std::to_string(number.fetch_add(1));
+    makeFolder(partial);
+    partial_ = partial;
+    lock_ = ::open(partial_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    // Another run may have removed it as abandoned in the moment without a lock.
+    bool gone = lock_ < 0 && errno == ENOENT;
+    if (lock_ >= 0) {
+      while (::flock(lock_, LOCK_EX) != 0 && errno == EINTR) {
+      }
+      struct stat info {};
+      gone = ::fstat(lock_, &info) == 0 && info.st_nlink == 0;
+    }
+    if (!gone) return;
+    forget();
+    if (lock_ >= 0) ::close(lock_);
+  }
 }
 
 void OutputFolder::remember(const fs::path& path) {

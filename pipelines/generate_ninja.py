@@ -54,7 +54,7 @@ rule shard
 
 def arguments() -> argparse.Namespace:
     p = argparse.ArgumentParser(description="Write OUT/build.ninja for one or more scenes.")
-    p.add_argument("scenes", nargs="+", metavar="SCENE", help="scene.toml")
+    p.add_argument("scenes", nargs="+", metavar="SCENE", help="the scene: .toml, .pbrt, .gltf, .glb, .obj")
     stage_options.add_arguments(p)
     p.add_argument(
         "--launcher",

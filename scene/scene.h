@@ -93,7 +93,12 @@ struct Instance {
     return out;
   }
   // Transforms a vector in the surface, such as a tangent.
-  Vec3 vector(Vec3 v) const { return point(v) - point({}); }
+  Vec3 vector(Vec3 v) const {
+    const auto row = [&](size_t r) {
+      return toWorld[4 * r] * v.x + toWorld[4 * r + 1] * v.y + toWorld[4 * r + 2] * v.z;
+    };
+    return {row(0), row(1), row(2)};
+  }
 };
 
 // The triangles from `firstTriangle` up to the next run are part of one object.

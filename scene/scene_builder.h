@@ -196,7 +196,7 @@ class SceneBuilder {
     size_t placed, lights, views;                  // how many there were
   };
   void placeLight(const Affine& place, LightSpec& light, FilePoint& position);
-  static void placeCamera(const Affine& place, Camera& camera, FilePoint& position);
+  void placeCamera(const Affine& place, Camera& camera, FilePoint& position) const;
   uint32_t surfaceOf(Surface surface);
   uint32_t materialNumber(const Triangle& t) const { return surfaces_[t.material].material; }
   const Material& materialOf(const Triangle& t) const {

@@ -66,24 +66,44 @@ void SceneBuilder::endInclude() {
   placed_.resize(done.placed);
   scene_.lights.resize(done.lights);
   lightPositions_.resize(done.lights);
+  bool first = true, several = false;
   for (const auto& [toScene, object] : done.instances) {
     for (const Placed& p : meshes)
       addInstance(p.prototype, toScene * p.toWorld, object == kNone ? p.object : object);
     for (size_t i = 0; i < lights.size(); ++i) {
       LightSpec light = lights[i];
+      if (light.type == LightType::Environment || light.type == LightType::Directional) {
+        several = several || !first;
+        if (!first) continue;  // it is everywhere, and would shine once more
+      }
       FilePoint position = positions[i];
       placeLight(toScene, light, position);
       addLight(light, position);
     }
+    first = false;
   }
+  if (several) warn(done.file.string() + ": its skies and suns shine once, as in its first place");
 }
 
 void SceneBuilder::addInstance(uint32_t prototype, const Affine& toWorld, uint32_t object) {
   placed_.push_back({prototype, including() ? place_ * toWorld : toWorld, object});
 }
 
-void SceneBuilder::placeCamera(const Affine& place, Camera& camera, FilePoint& position) {
+void SceneBuilder::placeCamera(const Affine& place, Camera& camera, FilePoint& position) const {
   position = place.point(position);
+  const auto stretch = [&](Vec3 d) {
+    const FilePoint to = place.direction({double{d.x}, double{d.y}, double{d.z}});
+    return std::hypot(to[0], to[1], to[2]);
+  };
+  if (camera.hasLens()) {  // an oval lens becomes a circle of the same area
+    const double radius = double{camera.lensRadius} *
+                          std::sqrt(stretch(camera.right) * stretch(camera.up)),
+                 focus = double{camera.focusDistance} * stretch(camera.forward);
+    if (!(radius <= kMaxLensLength && focus >= kMinFocusDistance && focus <= kMaxLensLength))
+      throw InputError(name() + ": a [[mesh]] scales a camera's lens beyond 1e9; scale it less");
+    camera.lensRadius = static_cast<float>(radius);
+    camera.focusDistance = static_cast<float>(focus);
+  }
   const bool mirrored = dot(cross(camera.forward, camera.up), camera.right) < 0.0f;
   camera.forward = turned(place, camera.forward, camera.forward);
   const Vec3 up = turned(place, camera.up, camera.up);

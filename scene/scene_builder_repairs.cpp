@@ -101,29 +101,52 @@ void SceneBuilder::cut(const Triangle& face, std::vector<Triangle>& pieces) {
   }
 }
 
-// Rounds points to floats, relative to the scene's origin. Prototypes keep their own coordinates.
-void SceneBuilder::roundPositions() {
-  FilePoint lower, upper;
-  lower.fill(INFINITY);
-  upper.fill(-INFINITY);
-  const auto extend = [&](const FilePoint& p) {
+namespace {
+
+struct Extent {
+  FilePoint lower{INFINITY, INFINITY, INFINITY}, upper{-INFINITY, -INFINITY, -INFINITY};
+
+  bool empty() const { return !(lower[0] <= upper[0]); }
+  void extend(const FilePoint& p) {
     for (size_t i = 0; i < 3; ++i) {
       lower[i] = std::min(lower[i], p[i]);
       upper[i] = std::max(upper[i], p[i]);
     }
-  };
+  }
+  FilePoint corner(int k) const {
+    return {k & 1 ? upper[0] : lower[0], k & 2 ? upper[1] : lower[1], k & 4 ? upper[2] : lower[2]};
+  }
+};
+
+}  // namespace
+
+// Rounds points to floats, relative to the scene's origin, those of prototypes relative to their
+// own, which their places then move.
+void SceneBuilder::roundPositions() {
+  Extent world;
+  std::vector<Extent> own(prototypes_.size());
   size_t triangle = 0;
   for (const Part& part : parts_) {
+    Extent& extent = part.prototype == kNone ? world : own[part.prototype];
     for (; triangle < part.endTriangle; ++triangle) {
       const Corners corners = cornersOf(scene_.triangles[triangle]);
-      if (part.prototype == kNone && !strays_.has(corners)) std::ranges::for_each(corners, extend);
+      if (part.prototype == kNone && strays_.has(corners)) continue;
+      for (const FilePoint& corner : corners) extent.extend(corner);
     }
   }
-  for (const Placed& p : placed_) extend(p.toWorld.point({}));
-  if (!scene_.triangles.empty()) scene_.origin = sceneOrigin(lower, upper);
+  std::vector<FilePoint> origins(prototypes_.size());
+  for (size_t p = 0; p < own.size(); ++p)
+    if (!own[p].empty()) origins[p] = sceneOrigin(own[p].lower, own[p].upper);
+  for (Placed& p : placed_) {
+    for (int k = 0; k < 8 && !own[p.prototype].empty(); ++k)
+      world.extend(p.toWorld.point(own[p.prototype].corner(k)));
+    const FilePoint at = p.toWorld.point(origins[p.prototype]);
+    for (size_t i = 0; i < 3; ++i) p.toWorld.m[i][3] = at[i];
+  }
+  if (!scene_.triangles.empty()) scene_.origin = sceneOrigin(world.lower, world.upper);
   scene_.positions.reserve(points_.size() + 1);
   for (const Part& part : parts_) {
-    const FilePoint origin = part.prototype == kNone ? scene_.origin : FilePoint{};
+    const FilePoint origin = part.prototype == kNone ? scene_.origin : origins[part.prototype];
     while (scene_.positions.size() < part.endPoint)
       scene_.positions.push_back(fromOrigin(points_[scene_.positions.size()], origin));
   }

@@ -197,6 +197,8 @@ void Accelerator::describe(Vec3 direction, SurfacePoint& hit) const {
   const Triangle& t = scene_.triangles[hit.triangle];
   Vec3 p0 = scene_.positions[t.position[0]], p1 = scene_.positions[t.position[1]],
        p2 = scene_.positions[t.position[2]];
+  // In the prototype's coordinates, edges have all their digits.
+  Vec3 ng = cross(p1 - p0, p2 - p0);
   const Instance* instance = hit.instance == kNone ? nullptr : &scene_.instances[hit.instance];
   if (instance) p0 = instance->point(p0), p1 = instance->point(p1), p2 = instance->point(p2);
   const float b1 = hit.u, b2 = hit.v, b0 = 1.0f - b1 - b2;
@@ -204,8 +206,7 @@ void Accelerator::describe(Vec3 direction, SurfacePoint& hit) const {
   hit.position = b0 * p0 + b1 * p1 + b2 * p2;
   hit.material = t.material;
   hit.wo = -direction;
-  Vec3 ng = normalize(cross(p1 - p0, p2 - p0));
-  if (instance && instance->mirrored) ng = -ng;
+  ng = normalize(instance ? instance->normal(ng) : ng);
   hit.front = dot(ng, hit.wo) >= 0.0f;
   hit.ng = hit.front ? ng : -ng;
   hit.ns = hit.ng;

@@ -96,6 +96,19 @@ LampTexture::LampTexture(const Scene& scene, uint32_t material, std::span<const 
   if (factor == 1.0) return;
   coarsen(factor);
   chooseLines();
+  // Checkerboards cannot be coarsened. Where their squares are too many, the quadrature has fewer
+  // lines than they.
+  Cells left;
+  for (const uint32_t t : triangles) {
+    const Cells cells = cellsOf(t);
+    left.area += cells.area;
+    left.length += cells.length;
+  }
+  const double fewer = std::max(std::sqrt(left.area / kMaxSquares), left.length / kMaxSquares);
+  if (!(fewer > 1.0)) return;
+  for (double* along : {&lines_.a, &lines_.b, &lines_.c, &lines_.d, &lines_.e, &lines_.f})
+    *along /= fewer;
+  exact_ = false;
 }
 
 void LampTexture::coarsen(double factor) {

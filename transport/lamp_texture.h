@@ -17,6 +17,7 @@ namespace bnvpl {
 class LampTexture {
  public:
   static constexpr double kMaxCells = 0x1p19;
+  static constexpr double kMaxSquares = 2 * kMaxCells;  // number of squares of checkerboards
 
   // Takes an emissive material of the scene, and the triangles that have it. Borrows the scene.
   LampTexture(const Scene& scene, uint32_t material, std::span<const uint32_t> triangles);

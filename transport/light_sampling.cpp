@@ -282,7 +282,10 @@ float LightSet::photonDensity(size_t index, Vec3 towards) const {
   if (light.area) return 1.0f / (light.areaTotal * (light.twoSided ? 2.0f : 1.0f));
   if (!hittable(index)) return 0.0f;
   float pdf = 0.0f;
-  radianceAtInfinity(index, towards, pdf);
+  if (light.spec.type == LightType::Directional)  // directions at its rim may round out of the sun
+    pdf = pdfNarrowCone(versine(light.spec.angularRadiusRad));
+  else
+    radianceAtInfinity(index, towards, pdf);
   const Vec3 face = facesAcross(scene_.bounds.extent(), towards);
   return kPi * pdf / (face.x + face.y + face.z);
 }

@@ -16,7 +16,8 @@ struct LobeChoice {
 // `roughImportance` scales the probability of the rough group before normalisation, 0..1.
 inline LobeChoice chooseLobes(const Bsdf& bsdf, Rng& rng, float roughImportance = 1.0f) {
   float specular = bsdf.specularProbability();
-  if (roughImportance < 1.0f && specular > 0.0f) specular /= specular + (1.0f - specular) * roughImportance;
+  if (roughImportance < 1.0f && specular > 0.0f)
+    specular /= specular + (1.0f - specular) * roughImportance;
   return rng.next() < specular ? LobeChoice{LobeGroup::Specular, specular}
                                : LobeChoice{LobeGroup::Rough, 1.0f - specular};
 }

@@ -11,17 +11,19 @@ from pathlib import Path
 import bpy
 import numpy as np
 
-from .exr_file import layer, read_exr
+from .exr_file import ExrError, layer, read_exr
 from .materials import exported_names
 from .scene_data import SceneError, film_size, scene_data
-from .settings import TEMPORARY_PREFIX, kept_folder, request_of, tools_folder
+from .settings import TEMPORARY_PREFIX, is_unsaved, kept_folder, request_of, tools_folder
 from .tools import (
+    MARK,
     NOTHING_BOUNCES,
     TOOLS,
     Cancelled,
     ToolError,
     commands,
     find_tool,
+    make_folder,
     path_command,
     run_lines,
     run_tool,
@@ -83,7 +85,7 @@ class BNVPL_RenderEngine(bpy.types.RenderEngine):
         try:
             with tempfile.TemporaryDirectory(prefix=TEMPORARY_PREFIX) as temporary:
                 self._render(depsgraph, Path(temporary))
-        except (ToolError, SceneError, OSError) as error:
+        except (ToolError, SceneError, ExrError, OSError) as error:
             self.error_set(str(error))
             self.report({"ERROR"}, str(error))
         except Cancelled:
@@ -96,7 +98,7 @@ class BNVPL_RenderEngine(bpy.types.RenderEngine):
         for tool in TOOLS:
             find_tool(tool, tools_folder())
         folder = kept_folder(scene) if scene.bnvpl.keep_files else temporary / "files"
-        folder.mkdir(parents=True, exist_ok=True)
+        make_folder(folder, scene.bnvpl.keep_files and is_unsaved(scene))
         passes = passes_of(scene, depsgraph.view_layer)
         request = request_of(scene, ("A", *(p[4] for p in passes)))
         self._export(depsgraph, temporary, folder)
@@ -142,13 +144,14 @@ class BNVPL_RenderEngine(bpy.types.RenderEngine):
         code = run_lines(command, temporary, lines.append, self.test_break)
         if code or not (temporary / "scene.glb").exists():
             raise SceneError("the export to glTF failed: " + "\n".join(lines[-5:]))
+        told.add_materials(exported_names(temporary / "scene.glb"))
+        for warning in told.warnings:
+            self.report({"WARNING"}, warning)
+        # It marks the folder as the add-on's, so that it comes before the other files.
+        (folder / "scene.toml").write_text(f"{MARK}\n{told.text()}", encoding="utf-8")
         for name in ("scene.glb", "world.exr"):
             if (temporary / name).exists():
                 shutil.move(temporary / name, folder / name)
-        told.add_materials(exported_names(folder / "scene.glb"))
-        for warning in told.warnings:
-            self.report({"WARNING"}, warning)
-        (folder / "scene.toml").write_text(told.text(), encoding="utf-8")
 
     def _show(self, progress) -> None:
         before = list(SHARES)[: list(SHARES).index(progress.tool)]

@@ -73,12 +73,16 @@ def tools_folder() -> str:
     return bpy.path.abspath(folder) if folder else ""
 
 
+def is_unsaved(scene: bpy.types.Scene) -> bool:
+    """Whether the folder would be beside a .blend that does not exist yet."""
+    return scene.bnvpl.folder.startswith("//") and not bpy.data.filepath
+
+
 def kept_folder(scene: bpy.types.Scene) -> Path:
     """Where the scene's files are kept: beside the .blend, else in the temporary folder."""
-    folder = scene.bnvpl.folder
-    if folder.startswith("//") and not bpy.data.filepath:
+    if is_unsaved(scene):
         return Path(tempfile.gettempdir()) / (TEMPORARY_PREFIX + bpy.path.clean_name(scene.name))
-    return Path(bpy.path.abspath(folder))
+    return Path(bpy.path.abspath(scene.bnvpl.folder))
 
 
 def request_of(scene: bpy.types.Scene, layers: tuple[str, ...]) -> Request:

@@ -4,9 +4,11 @@
 from __future__ import annotations
 
 import json
+import os
 import queue
 import shlex
 import shutil
+import stat
 import subprocess
 import threading
 from collections.abc import Callable
@@ -15,6 +17,10 @@ from pathlib import Path
 from typing import IO
 
 TOOLS = ("vpl-place", "vpl-eliminate", "vpl-estimate", "vpl-render")
+
+
+# The first line of scene.toml, and the second of render.sh.
+MARK = "# Written by bnvpl's add-on for Blender; its next render replaces this file."
 
 
 class ToolError(RuntimeError):
@@ -83,42 +89,70 @@ def _candidates(preset: Preset, vpls: int) -> str:
     return preset.candidates if 10 * vpls <= counted else str(10 * vpls)
 
 
+def _seed(request: Request) -> list[str]:
+    return ["--seed", str(request.seed)] if request.seed != 1 else []
+
+
+def _threads(request: Request) -> list[str]:
+    return ["--threads", str(request.threads)] if request.threads else []
+
+
+def _render(request: Request, inputs: list[str], options: tuple[str, ...]) -> list[str]:
+    words = ["vpl-render", "scene.toml", *inputs, "-o", "image.exr"]
+    words += ["--spp", str(request.samples or PRESETS[request.preset].samples), *options]
+    words += _seed(request) + _threads(request)
+    if request.transparent:
+        words += ["--transparent", "on"]
+    if request.for_denoiser:
+        words += ["--for-denoiser", "on"]
+    if request.layers:
+        words += ["--layers", ",".join(request.layers)]
+    return words
+
+
 def commands(request: Request) -> list[list[str]]:
     """The four command lines, for the folder that holds scene.toml."""
     preset = PRESETS[request.preset]
     vpls = request.vpls or preset.vpls
-    seed = ["--seed", str(request.seed)] if request.seed != 1 else []
-    threads = ["--threads", str(request.threads)] if request.threads else []
-    common = seed + threads
-    render = ["vpl-render", "scene.toml", "lit.vpl", "-o", "image.exr"]
-    render += ["--spp", str(request.samples or preset.samples), *preset.render, *common]
-    if request.transparent:
-        render += ["--transparent", "on"]
-    if request.for_denoiser:
-        render += ["--for-denoiser", "on"]
-    if request.layers:
-        render += ["--layers", ",".join(request.layers)]
+    threads = _threads(request)
+    common = _seed(request) + threads
     return [
         ["vpl-place", "scene.toml", "-o", "candidates.vpl", "-n", _candidates(preset, vpls)]
         + common,
         ["vpl-eliminate", "candidates.vpl", "-o", "vpls.vpl", "-n", str(vpls), *threads],
         ["vpl-estimate", "scene.toml", "vpls.vpl", "-o", "lit.vpl", "--photons", preset.photons]
         + [*preset.estimate, *common],
-        render,
+        _render(request, ["lit.vpl"], preset.render),
     ]
 
 
 def path_command(request: Request) -> list[str]:
     """The command line for a view in which VPLs find no place: paths need none."""
-    vpls = commands(request)[-1]
-    words = [word for word in vpls if word not in PRESETS[request.preset].render]
-    words.remove("lit.vpl")
-    return words + ["--integrator", "path"]
+    return _render(request, [], ("--integrator", "path"))
+
+
+def make_folder(folder: Path, private: bool) -> None:
+    """Makes the folder of a render's files, or takes one whose files the add-on wrote.
+
+    Raises OSError for files of others, and for a private folder that another user could have made.
+    """
+    folder.mkdir(mode=0o700 if private else 0o777, parents=True, exist_ok=True)
+    state = folder.lstat()
+    if private and (not stat.S_ISDIR(state.st_mode) or state.st_uid != os.getuid()):
+        raise PermissionError(f"{folder} belongs to another user; save the .blend, or remove it")
+    for name, line in (("scene.toml", 0), ("render.sh", 1)):
+        file = folder / name
+        lines = file.read_text(errors="replace").split("\n", 2) if file.exists() else []
+        if lines and MARK not in lines[line : line + 1]:
+            raise FileExistsError(f"{file} is not of this add-on; choose another Folder")
+    for name in ("scene.glb", "world.exr"):
+        if (folder / name).exists() and not (folder / "scene.toml").exists():
+            raise FileExistsError(f"{folder / name} is not of this add-on; choose another Folder")
 
 
 def script(lines: list[list[str]]) -> str:
     """A shell script that renders the folder again."""
-    head = ["#!/bin/sh -e", 'cd "$(dirname "$0")"']
+    head = ["#!/bin/sh -e", MARK, 'cd "$(dirname "$0")"']
     return "\n".join(head + [shlex.join(command) for command in lines]) + "\n"
 
 

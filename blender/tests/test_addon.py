@@ -134,6 +134,34 @@ class ToolsTest(unittest.TestCase):
             with self.assertRaises(tools.Cancelled):
                 tools.run_tool(endless, folder, str(BIN), seen.append, lambda: True)
 
+    def test_paths_keep_every_other_option(self) -> None:
+        request = tools.Request(preset="DRAFT", threads=2, samples=4, seed=2, layers=("A",))
+        words = " ".join(tools.path_command(request))
+        self.assertEqual(
+            words,
+            "vpl-render scene.toml -o image.exr --spp 4 --integrator path --seed 2 --threads 2 "
+            "--layers A",
+        )
+
+    def test_files_of_others_stay(self) -> None:
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name) / "new"
+            for text in (tools.MARK + "\n", "[film]\n"):
+                tools.make_folder(folder, private=True)
+                self.assertEqual(folder.stat().st_mode & 0o777, 0o700)
+                (folder / "scene.toml").write_text(text)
+                (folder / "scene.glb").write_text("")
+                (folder / "render.sh").write_text(tools.script([["true"]]))
+            with self.assertRaisesRegex(FileExistsError, "scene.toml is not of this add-on"):
+                tools.make_folder(folder, private=False)
+            (folder / "scene.toml").unlink()
+            with self.assertRaisesRegex(FileExistsError, "scene.glb is not of this add-on"):
+                tools.make_folder(folder, private=False)
+            link = Path(name) / "link"
+            link.symlink_to(folder)
+            with self.assertRaises(PermissionError):
+                tools.make_folder(link, private=True)
+
     def check_image(self, path: Path) -> None:
         """Our reader and OpenImageIO read the same."""
         ours, reference = exr_file.read_exr(path), bnvpl.read_exr(path)

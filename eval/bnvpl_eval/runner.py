@@ -83,7 +83,8 @@ class Runner:
     # Commit, processor and date go into every run.json.
     provenance: dict[str, Any] = field(default_factory=dict)
     runs: dict[str, Run] = field(default_factory=dict)  # all requested runs, by key
-    limit_cpu_s: float = math.inf  # a run that needs more is stopped
+    limited_tool: str = ""
+    limit_cpu_s: float = math.inf  # a run of this tool that needs more is stopped
     _files: dict[Path, str] = field(default_factory=dict)
     # Time and size of each tool when it was first used.
     _tools: dict[Path, tuple[Any, ...]] = field(default_factory=dict)
@@ -118,7 +119,7 @@ class Runner:
                 ]
             ).encode()
         )
-        if key in self.runs and self.runs[key].cpu_s <= self.limit_cpu_s:
+        if key in self.runs and self.runs[key].cpu_s <= self._limit_of(tool):
             return self.runs[key]
         folder = self.cache / key
         if not (folder / "run.json").is_file():
@@ -129,19 +130,22 @@ class Runner:
                     f"eval: {folder / name}: missing from the cache; delete {folder} and rerun"
                 )
         run = Run(folder, json.loads((folder / "run.json").read_text()))
-        if run.cpu_s > self.limit_cpu_s:
+        if run.cpu_s > self._limit_of(tool):
             raise TookTooLong
         self.runs[key] = run
         return run
 
     @contextmanager
-    def limited(self, cpu_s: float) -> Iterator[None]:
-        """Within it, runs that need more CPU seconds raise TookTooLong, also if they are cached."""
-        self.limit_cpu_s = cpu_s
+    def limited(self, tool: str, cpu_s: float) -> Iterator[None]:
+        """Within it, runs of a tool that need more CPU time raise TookTooLong, cached ones too."""
+        self.limited_tool, self.limit_cpu_s = tool, cpu_s
         try:
             yield
         finally:
-            self.limit_cpu_s = math.inf
+            self.limited_tool, self.limit_cpu_s = "", math.inf
+
+    def _limit_of(self, tool: str) -> float:
+        return self.limit_cpu_s if tool == self.limited_tool else math.inf
 
     def _require_unchanged(self, executable: Path) -> None:
         """Ends the program if a tool has changed, so that no report mixes two versions of it."""
@@ -182,7 +186,7 @@ class Runner:
                 stdout=log,
                 stderr=subprocess.STDOUT,
                 cwd=ROOT,
-                preexec_fn=self._set_limit if math.isfinite(self.limit_cpu_s) else None,
+                preexec_fn=self._set_limit if executable.name == self.limited_tool else None,
             )
             _, status, usage = os.wait4(child.pid, 0)
             child.returncode = os.waitstatus_to_exitcode(status)
@@ -193,6 +197,10 @@ class Runner:
             if child.returncode == -signal.SIGXCPU:
                 raise TookTooLong
             raise ToolFailed(command, child.returncode, text)
+        stats = partial / "stats.json"
+        peak_mib = usage.ru_maxrss / 1024  # that of this program where it is larger
+        if stats.is_file():
+            peak_mib = json.loads(stats.read_text())["peak_memory_MiB"]
         record = {
             "tool": executable.name,
             "options": words,
@@ -200,7 +208,7 @@ class Runner:
             "key": key,
             "wall_s": round(wall, 3),
             "cpu_s": round(usage.ru_utime + usage.ru_stime, 3),
-            "peak_mib": round(usage.ru_maxrss / 1024, 1),
+            "peak_mib": round(peak_mib, 1),
             **self.provenance,
         }
         (partial / "run.json").write_text(json.dumps(record, indent=1))

@@ -55,7 +55,7 @@ class TooSlow(unittest.TestCase):
         ):
             self.assertEqual(run.at_equal_vpls(mock.Mock(), "all"), [])
         self.assertEqual((image.call_count, len(run.skipped)), (1, 1))
-        context.runner.limited.assert_called_once_with(3.0)
+        context.runner.limited.assert_called_once_with("vpl-render", 3.0)
 
 
 if __name__ == "__main__":

@@ -54,14 +54,15 @@ class Caching(unittest.TestCase):
 
     def test_a_run_ends_at_its_limit(self) -> None:
         runner = Runner(self.folder, self.folder / "cache", quiet=True)
-        with self.assertRaises(TookTooLong), runner.limited(1):
+        with self.assertRaises(TookTooLong), runner.limited("vpl-fake", 1):
             self.run_tool("endless", runner)
         self.assertEqual(list((self.folder / "cache").iterdir()), [])
-        with runner.limited(1):
+        with runner.limited("vpl-fake", 1):
             self.assertGreater(self.run_tool("a", runner).cpu_s, 0.0)
-        with self.assertRaises(TookTooLong), runner.limited(0):
+        with self.assertRaises(TookTooLong), runner.limited("vpl-fake", 0):
             self.run_tool("a", runner)
-        self.run_tool("a", runner)
+        with runner.limited("vpl-other", 0):
+            self.run_tool("a", runner)
         self.assertEqual(self.calls(), 2)
 
     def test_a_changed_product_reruns_what_follows(self) -> None:

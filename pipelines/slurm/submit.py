@@ -83,7 +83,7 @@ def arguments() -> argparse.Namespace:
         epilog=f"STAGE is one of {', '.join(KINDS)}; "
         f"of --shards {', '.join(stage_options.DIVIDED)}.",
     )
-    p.add_argument("scene", metavar="SCENE", help="scene.toml")
+    p.add_argument("scene", metavar="SCENE", help="the scene: .toml, .pbrt, .gltf, .glb, .obj")
     stage_options.add_arguments(p, shards="16")
     add_limits(p)
     p.add_argument(

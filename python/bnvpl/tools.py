@@ -72,6 +72,9 @@ def _execute(
             lines = _listen(child.stderr, tool, progress)
         except BaseException:  # also of the caller's progress(), and Ctrl-C
             child.send_signal(signal.SIGINT)  # the tool saves its checkpoint, if it has one
+            for _ in child.stderr:  # its last lines would find a closed pipe, and end it
+                pass
+            child.wait()
             raise
         code = child.wait()
         stdout.seek(0)

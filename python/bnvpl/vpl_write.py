@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
+import fcntl
+import itertools
 import json
 import math
 import os
@@ -12,6 +15,9 @@ from . import layout as at
 from .columns import COLUMNS, STAGES, Array
 from .layout import Entry, Header, StrPath
 from .vpls import Vpls, typed
+
+
+_partials = itertools.count()  # numbers of the process's unfinished files
 
 
 def _provenance_text(vpls: Vpls) -> str:
@@ -105,7 +111,11 @@ def _refuse_other_file(path: Path) -> None:
 
 
 def save(path: StrPath, vpls: Vpls) -> None:
-    """Writes VPLs, whole or not at all. Raises ValueError where something is invalid."""
+    """Writes VPLs, whole or not at all, as the tools do: through links, with the old file's mode.
+
+    Raises ValueError where something is invalid, and FileExistsError or PermissionError for a file
+    that is no .vpl or is read-only.
+    """
     target = Path(path)
     try:
         pieces = _pieces(vpls)
@@ -113,10 +123,20 @@ def save(path: StrPath, vpls: Vpls) -> None:
     except ValueError as error:
         raise ValueError(f"{target}: not written: {error}") from None
     _refuse_other_file(target)
-    partial = target.with_name(f"{target.name}.partial-{os.getpid()}")
+    place = Path(os.path.realpath(target))
+    if place.exists() and not os.access(place, os.W_OK):
+        raise PermissionError(f"{target}: is read-only; name another file")
+    # The tools remove files of such a name that no process locks, as left by a killed one.
+    partial = place.with_name(f"{place.name}.partial-{os.getpid()}-{next(_partials)}")
     try:
-        with partial.open("wb") as file:
+        with partial.open("xb") as file:
+            with contextlib.suppress(OSError):  # some file systems have no locks or modes
+                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                if place.exists():
+                    os.fchmod(file.fileno(), place.stat().st_mode & 0o7777)
             file.writelines([header, *pieces])
-        os.replace(partial, target)
+            file.flush()
+            os.fsync(file.fileno())
+            os.replace(partial, place)
     finally:
         partial.unlink(missing_ok=True)

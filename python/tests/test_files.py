@@ -6,10 +6,12 @@ test_files.py BIN       # folder of the executables
 
 from __future__ import annotations
 
+import os
 import random
 import re
 import struct
 import subprocess
+import unittest
 from pathlib import Path
 
 import numpy as np
@@ -230,6 +232,26 @@ class Refused(TestFolder):
         with self.assertRaises(FileExistsError):
             bnvpl.write_vpl(file, bnvpl.read_vpl(GOLDEN / "lit.vpl"))
         self.assertEqual(file.read_text(), "v 0 0 0\n")
+
+    def test_links_are_followed_and_modes_kept(self) -> None:
+        vpls = bnvpl.read_vpl(GOLDEN / "lit.vpl")
+        real, link = self.folder / "real.vpl", self.folder / "link.vpl"
+        link.symlink_to("real.vpl")
+        for mode in (0o600, 0o640):
+            bnvpl.write_vpl(link, vpls)
+            self.assertTrue(link.is_symlink())
+            real.chmod(mode)
+            bnvpl.write_vpl(link, vpls)
+            self.assertEqual(real.stat().st_mode & 0o777, mode)
+        self.assertEqual(sorted(p.name for p in self.folder.iterdir()), ["link.vpl", "real.vpl"])
+
+    @unittest.skipIf(os.geteuid() == 0, "root may write read-only files")
+    def test_a_read_only_file_is_kept(self) -> None:
+        file = self.folder / "x.vpl"
+        file.write_bytes((GOLDEN / "lit.vpl").read_bytes())
+        file.chmod(0o444)
+        with self.assertRaises(PermissionError):
+            bnvpl.write_vpl(file, bnvpl.read_vpl(GOLDEN / "lit.vpl"))
 
     def test_files_that_are_missing_or_none(self) -> None:
         with self.assertRaises(FileNotFoundError):

@@ -7,6 +7,7 @@ test_tools.py BIN       # folder of the executables
 from __future__ import annotations
 
 import os
+import re
 import time
 import unittest
 from pathlib import Path
@@ -16,7 +17,7 @@ from unittest import mock
 import numpy as np
 import OpenImageIO as oiio
 
-from support import BIN, SCENE, TestFiles, TestFolder, main
+from support import BIN, ROOT, SCENE, TestFiles, TestFolder, main
 
 # isort: split
 import bnvpl
@@ -33,6 +34,28 @@ class Running(TestFiles):
         kept = self.folder / "stats.json"
         bnvpl.run("vpl-estimate", SCENE, self.vpls, output=self.lit, photons="40k", stats=kept)
         self.assertIn('"vpl-estimate"', kept.read_text())
+
+    def test_statistics_of_the_readme(self) -> None:
+        c, v, lit = (self.folder / name for name in ("c.vpl", "v.vpl", "l.vpl"))
+        image: dict[str, Any] = {"output": self.folder / "p.exr", "png": self.folder / "p.png"}
+        made = {
+            "vpl-place": bnvpl.run("vpl-place", SCENE, output=c, count=300),
+            "vpl-eliminate": bnvpl.run("vpl-eliminate", c, output=v, count=30),
+            "vpl-estimate": bnvpl.run("vpl-estimate", SCENE, v, output=lit, photons="20k"),
+            "vpl-render": bnvpl.run("vpl-render", SCENE, lit, size="8x8", passes=2, **image),
+        }
+        text = (ROOT / "python/README.md").read_text()
+        rows = dict(re.findall(r"^\| (all|`vpl-\w+`) \| (`.*) \|$", text, re.M))
+        self.assertEqual(len(rows), 5)
+        for tool, stats in made.items():
+            told = re.findall(r"`(\w+)`", rows["all"] + rows[f"`{tool}`"])
+            self.assertGreater(len(told), 8)
+            self.assertLessEqual(set(told), stats.keys(), tool)
+
+    def test_peak_memory_is_that_of_the_tool(self) -> None:
+        ours = np.ones(40_000_000)  # 305 MiB, which a process inherits as its peak
+        stats = bnvpl.run("vpl-inspect", "info", self.lit)
+        self.assertLess(stats["peak_memory_MiB"], ours.nbytes / 2**20 / 2)
 
     def test_progress(self) -> None:
         steps: list[bnvpl.Progress] = []
@@ -54,6 +77,21 @@ class Running(TestFiles):
             )
         self.assertLess(time.monotonic() - begin, 60)
         self.assertEqual(list(self.folder.glob("long*")), [])
+
+    def test_a_tool_that_is_stopped_saves_its_work(self) -> None:
+        def give_up(step: bnvpl.Progress) -> None:
+            if step.done > 0:
+                raise InterruptedError("enough")
+
+        image, saved = self.folder / "long.exr", self.folder / "saved"
+        paths = {"integrator": "path", "spp": 16384, "size": (64, 48), "threads": 1}
+        for _ in range(2):  # the second goes on
+            with self.assertRaisesRegex(InterruptedError, "enough"):
+                bnvpl.run(
+                    "vpl-render", SCENE, output=image, checkpoint=saved, progress=give_up, **paths
+                )
+            self.assertGreater(saved.stat().st_size, 0)
+        self.assertEqual([p.name for p in self.folder.glob("*long*")], [])
 
     def test_commands_of_vpl_inspect(self) -> None:
         info = bnvpl.run("vpl-inspect", "info", self.lit)["info"]

@@ -45,6 +45,31 @@ TEST_F(OutputFolderTest, WithoutCommitNothingIsThere) {
   EXPECT_EQ(fileCount(), 0u);
 }
 
+// Each run removes partial folders that no process holds; none may take one that just begins.
+TEST_F(OutputFolderTest, RunsThatBeginTogetherLeaveEachOthersFolders) {
+  std::vector<pid_t> runs;
+  for (int run = 0; run < 3; ++run) {
+    runs.push_back(::fork());
+    if (runs.back() != 0) continue;
+    try {
+      for (int i = 0; i < 400; ++i) {
+        OutputFolder folder(at("made"));
+        std::ofstream file(folder.add("a.txt"));
+        if (!file) ::_exit(2);
+      }
+    } catch (const OutputError&) {
+      ::_exit(1);
+    }
+    ::_exit(0);
+  }
+  for (const pid_t run : runs) {
+    int status = -1;
+    ASSERT_EQ(::waitpid(run, &status, 0), run);
+    EXPECT_EQ(status, 0);
+  }
+  EXPECT_EQ(fileCount(), 0u);
+}
+
 TEST_F(OutputFolderTest, AFileThatAppearsMeanwhileStays) {
   make("one");
   OutputFolder folder(at("made"));

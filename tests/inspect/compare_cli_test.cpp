@@ -116,6 +116,32 @@ TEST_F(CompareCli, AMaskChoosesThePixels) {
       << wrong.output;
 }
 
+// A crop has the measures of a mask of its window, against the whole image and another crop.
+TEST_F(CompareCli, CropsCountWhereTheyHavePixels) {
+  Image crop = readExr(at("a.exr"));
+  crop.dataWindow = PixelBox{0, 0, 2, 2};
+  for (ImageChannel& channel : crop.channels)
+    for (size_t i = 0; i < 12; ++i)
+      if (i % 4 >= 2 || i / 4 >= 2) channel.data[i] = 0.0f;
+  writeExr(at("crop.exr"), crop, ExrPixelType::Float);
+  std::vector<uint8_t> rgb8(4 * 3 * 3, 0);
+  for (const size_t i : {0u, 1u, 4u, 5u}) rgb8[3 * i] = rgb8[3 * i + 1] = rgb8[3 * i + 2] = 255;
+  writePng(at("window.png"), 4, 3, rgb8);
+  const Json masked = json("--mask " + path("window.png"));
+  for (const std::string& pair : {path("crop.exr") + " " + path("b.exr")}) {
+    const Outcome r = runInspect("compare " + pair + " --json");
+    ASSERT_EQ(r.code, kExitOk) << r.output;
+    const Json cropped = Json::parse(r.output);
+    EXPECT_EQ(cropped["channels"], masked["channels"]);
+    EXPECT_EQ(cropped["mask_pixels"], 4.0);
+  }
+  crop.dataWindow = PixelBox{2, 0, 4, 2};
+  writeExr(at("other.exr"), crop, ExrPixelType::Float);
+  const Outcome apart = runInspect("compare " + path("crop.exr") + " " + path("other.exr"));
+  EXPECT_EQ(apart.code, kExitInput);
+  EXPECT_TRUE(contains(apart.output, "crop both alike")) << apart.output;
+}
+
 TEST_F(CompareCli, EveryMapIsAnotherPicture) {
   std::vector<std::string> pictures;
   for (const char* map : {"difference", "relmse", "smape", "flip", "hdr-flip"}) {

@@ -114,6 +114,27 @@ TEST_F(OddScenes, CoincidentSurfacesOfDifferentMaterials) {
   EXPECT_EQ(renderVpls(world, lit, {{"spp", "1"}}).stats.nonFinite, 0u);
 }
 
+// Another program may have lit the VPLs, by lights that it knows alone.
+TEST_F(OddScenes, VplsMayBeAllTheLight) {
+  const World bright(room(metres_, ""));
+  const VplTable lit = lightVpls(bright, fewVpls(bright, "1000", "50"), {{"photons", "10k"}}).table;
+  Scene scene = room(metres_, "");
+  for (Material& m : scene.materials) m.emission = {};
+  scene.lights.clear();
+  const World dark(std::move(scene));
+  ASSERT_EQ(dark.lights.size(), 0u);
+  for (const char* integrator : {"vpl", "guided"}) {
+    const FilmStats stats =
+        renderVpls(dark, lit, {{"integrator", integrator}, {"spp", "2"}, {"fireflies", "keep"}})
+            .stats;
+    EXPECT_EQ(stats.direct, 0.0) << integrator;
+    EXPECT_EQ(stats.nonFinite, 0u);
+    if (std::string(integrator) == "vpl") {
+      EXPECT_GT(stats.indirect, 0.0);
+    }
+  }
+}
+
 TEST_F(OddScenes, ALightOfNoPowerBesideOthersIsNotThere) {
   const std::string dark =
       "[[light]]\ntype = \"point\"\nposition = [0, 1, 0]\nintensity = [0, 0, 0]\n"

@@ -9,8 +9,9 @@ class Chain : public PipelineTest {
  protected:
   void SetUp() override {
     makeStages(scene_);
-    succeed("vpl-render", scene_ + " " + path("lit.vpl") + " -o " + path("image.exr") +
-                              " --size 24x16 --spp 2 --layers N,direct --compensate none");
+    succeed("vpl-render",
+            scene_ + " " + path("lit.vpl") + " -o " + path("image.exr") +
+                " --size 24x16 --spp 2 --layers N,direct,CryptoObject --compensate none");
   }
   std::string all() const {
     return "check --deep " + path("candidates.vpl") + " " + path("vpls.vpl") + " " +
@@ -43,6 +44,22 @@ TEST_F(Chain, TheCommandsOfTheMessageRepairIt) {
   succeed("vpl-place", scene_ + " -o " + path("candidates.vpl") + " -n 300");
   ASSERT_EQ(shell("bash -e " + path("mend.sh")).code, 0);
   EXPECT_EQ(readAll(at("image.exr")), image);
+}
+
+TEST_F(Chain, TheCommandsHaveTheOptionsOfTheScene) {
+  write("view.toml",
+        "[film]\nwidth = 24\nheight = 16\n[camera]\nposition = [0.3, 1.2, 3.2]\nlook_at = [-0.2, "
+        "0.4, 0.0]\nup = [0.0, 1.0, 0.0]\nvertical_fov_deg = 50.0\n");
+  const std::string view = " --view " + path("view.toml"), scene = " --scene " + scene_ + view;
+  succeed("vpl-render", scene_ + view + " " + path("lit.vpl") + " -o " + path("image.exr"));
+  ASSERT_EQ(tool("vpl-inspect", all() + scene).code, kExitOk);
+  succeed("vpl-place", scene_ + " -o " + path("candidates.vpl") + " -n 300 --seed 2");
+  const Outcome r = tool("vpl-inspect", all() + " --quiet" + scene);
+  const size_t run = r.err.find("; run: ");
+  ASSERT_NE(run, std::string::npos) << r.err;
+  write("mend.sh", "PATH='" BNVPL_BIN "':$PATH\n" + r.err.substr(run + 7));
+  ASSERT_EQ(shell("bash -e " + path("mend.sh")).code, 0) << r.err;
+  EXPECT_EQ(tool("vpl-inspect", all() + scene).code, kExitOk);
 }
 
 TEST_F(Chain, AnotherSceneAMissingStageAndATwinAreRefused) {

@@ -61,6 +61,16 @@ TEST_F(Crop, CropsGoInShards) {
   EXPECT_TRUE(contains(tool("vpl-inspect", "check " + path("crop.exr")).out, "OK"));
 }
 
+TEST_F(Crop, ThatOfTheWholeFilmIsTheImage) {
+  const std::string render = scene_ + " --integrator path --spp 1 --quiet -o ";
+  succeed("vpl-render", render + path("whole.exr"));
+  succeed("vpl-render", render + path("crop.exr") + " --crop 0,0,64,48");
+  EXPECT_TRUE(contains(tool("vpl-inspect", "check " + path("crop.exr")).out, "OK"));
+  const Image whole = readExr(at("whole.exr")), crop = readExr(at("crop.exr"));
+  EXPECT_FALSE(crop.dataWindow);
+  EXPECT_EQ(*crop.find("R"), *whole.find("R"));
+}
+
 TEST_F(Crop, ThePreviewHasThePixelsOfTheCrop) {
   succeed("vpl-render", scene_ + " --integrator path --spp 1 --crop 3,4,50,30 --quiet -o " +
                             path("x.exr") + " --png " + path("x.png"));

@@ -36,6 +36,13 @@ TEST_F(RejectionChain, IsOneWholeChain) {
           "check " + path("light.vpl") + " " + path("rj.exr"));  // the file between them is missing
 }
 
+TEST_F(RejectionChain, VplsOfVplEstimateAreRefused) {
+  makeStages(mine_);
+  fail("vpl-eliminate",
+       path("lit.vpl") + " -n 5 --method rejection --scene " + mine_ + " -o " + path("x.vpl"),
+       kExitInput, {"vpl-place --method light", "vpl-estimate"});
+}
+
 // Rejection may scale the flux of a VPL by one factor; any other change is refused.
 TEST_F(RejectionChain, RowsThatWereTouchedAreRefused) {
   const VplTable right = readVpl(at("rj.vpl"));

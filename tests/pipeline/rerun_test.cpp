@@ -142,7 +142,15 @@ TEST_F(Rerun, NamesThatMakeOrNinjaMisreadAreRefusedAtOnce) {
        path("veach-door/scene.toml") + " --quiet -n 1k -o " + path("c*.vpl") + " --depfile " +
            path("c.d"),
        2, {"--depfile: Make and ninja cannot read the name", "rename it"});
-  EXPECT_FALSE(fs::exists(at("c.vpl")));
+  // A depfile names the folder of a missing file by its absolute path.
+  fs::copy(at("veach-door"), at("b:c"));
+  fs::remove(at("b:c/landscape.png"));
+  const Outcome r =
+      shell("sh -c 'cd \"$0\" && \"$1\" scene.toml --quiet -n 1k -o c.vpl --depfile c.d' " +
+            path("b:c") + " '" BNVPL_BIN "/vpl-place'");
+  EXPECT_EQ(r.code, 3) << r.err;
+  EXPECT_TRUE(contains(r.err, "--depfile: Make and ninja cannot read the name")) << r.err;
+  EXPECT_FALSE(fs::exists(at("c.vpl")) || fs::exists(at("b:c/c.vpl")));
 }
 
 // This also holds where the output folder contains files of others.

@@ -13,6 +13,13 @@ inline Scene room(uint32_t width, uint32_t height) {
   return scene;
 }
 
+// Gives every corner texture coordinates that differ from those of its neighbours.
+inline void addTextureCoordinates(Scene& scene) {
+  scene.uvs.clear();
+  for (const Vec3 p : scene.positions) scene.uvs.push_back({p.x + 0.31f * p.z, p.y + 0.47f * p.z});
+  for (Triangle& t : scene.triangles) t.uv = t.position;
+}
+
 // A box open to the viewer, with an area light, a sky with an image, a sun and a point light.
 inline Scene manyLights() {
   Scene scene = room(24, 24);

@@ -1,5 +1,6 @@
 // Renderers whose expected images must be equal, pixel by pixel, or equal known images.
 #include "core/sampling.h"
+#include "tests/render/lit_rooms.h"
 #include "tests/support/flat_image.h"
 #include "tests/support/pipeline.h"
 #include "tests/support/student_t.h"
@@ -191,9 +192,7 @@ TEST(SameExpectation, PathsAndPhotonsOverEveryModel) {
 TEST(SameExpectation, PathsAndPhotonsOverNormalMaps) {
   Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "cornell/scene.toml");
   scene.film = {16, 16};
-  scene.uvs.clear();
-  for (const Vec3 p : scene.positions) scene.uvs.push_back({p.x + 0.31f * p.z, p.y + 0.47f * p.z});
-  for (Triangle& t : scene.triangles) t.uv = t.position;
+  addTextureCoordinates(scene);
   scene.expressions = {constantExpression(0.5f * normalize(Vec3{0.8f, 0.4f, 0.4f}) + Vec3(0.5f))};
   ConductorModel metal;
   metal.roughness = Roughness(Scalar(0.5f), Scalar(0.5f), Roughness::Alpha::Same);
@@ -206,6 +205,33 @@ TEST(SameExpectation, PathsAndPhotonsOverNormalMaps) {
     m.relief.normalMap = 0;
   }
   const World world(std::move(scene));
+  const Given indirect{{"only", "indirect"}};
+  EXPECT_TRUE(sameExpectation(paths(world, with(indirect, {{"spp", "16"}})),
+                              photons(world, with(indirect, {{"spp", "4"}})), {.seeds = 64}));
+}
+
+// Panels, one before the other, are instances of the same triangles: a photon at one is not seen
+// through another.
+TEST(SameExpectation, PathsAndPhotonsOnInstances) {
+  SceneBuilder builder("panels");
+  builder.setFilm({16, 12});
+  Camera camera;
+  camera.verticalFovRad = 0.8f;
+  builder.setCamera({0, 0, 3}, camera);
+  Material white, lamp;
+  white.model = DiffuseModel{Vec3(0.7f)};
+  lamp.emission = Vec3(4.0f);
+  const uint32_t paint = builder.addMaterial(white);
+  addQuad(builder, paint, {-2, -1, -2}, {0, 0, 8}, {4, 0, 0});  // floor
+  addQuad(builder, paint, {-2, -1, -2}, {4, 0, 0}, {0, 3, 0});
+  addQuad(builder, builder.addMaterial(lamp), {-1, 2, -1}, {2, 0, 0}, {0, 0, 3});
+  const uint32_t panel = builder.beginPrototype();
+  addQuad(builder, paint, {-0.5f, -0.5f, 0}, {1, 0, 0}, {0, 1, 0});
+  builder.endPrototype();
+  for (const double z : {0.0, -0.5, -1.0})
+    builder.addInstance(panel, Affine::fromParts({0, 0, z}, {0, 0, 0}, {1, 1, 1}));
+  const World world(builder.finish());
+  ASSERT_EQ(world.scene.instances.size(), 3u);
   const Given indirect{{"only", "indirect"}};
   EXPECT_TRUE(sameExpectation(paths(world, with(indirect, {{"spp", "16"}})),
                               photons(world, with(indirect, {{"spp", "4"}})), {.seeds = 64}));

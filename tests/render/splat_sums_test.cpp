@@ -23,6 +23,16 @@ TEST(SplatSums, AreExactWhateverTheirSize) {
   }
 }
 
+TEST(SplatSums, MayBeNegative) {
+  for (const float value : {-1.0f, -3.0f, -0x1.fffffep127f, -0x1p-149f, -1e-3f, -1e10f}) {
+    SplatSums sums(1);
+    sums.add(splatOf(0, value));
+    EXPECT_EQ(sums.sum(0, 0), double{value});
+    sums.add(splatOf(0, 1.0f));
+    EXPECT_EQ(sums.sum(0, 1), double{value} + 1.0) << value;
+  }
+}
+
 TEST(SplatSums, HandTheirCarriesOn) {
   SplatSums sums(1);
   for (int i = 0; i < 200000; ++i) sums.add(splatOf(0, 0x1.fffffep20f));

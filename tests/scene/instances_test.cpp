@@ -55,16 +55,25 @@ void addFloor(SceneBuilder& builder, double away) {
   builder.addMesh("floor", {corners, {}, {}, {{{0, 2, 1}, kNoCorners, kNoCorners, kNone}}});
 }
 
-Scene tents(bool shared, double away = 0.0) {
+uint32_t addPrototype(SceneBuilder& builder, Mesh mesh) {
+  const uint32_t prototype = builder.beginPrototype();
+  builder.addMesh("tent", std::move(mesh));
+  builder.endPrototype();
+  return prototype;
+}
+
+// `own`: how far the mesh lies from its own origin; its places bring it back.
+Scene tents(bool shared, double away = 0.0, double own = 0.0) {
   SceneBuilder builder("tents");
-  const Tent tent(builder);
+  Tent tent(builder);
   addFloor(builder, away);
   std::vector<Affine> places = kPlaces;
   for (Affine& p : places) p.m[0][3] += away;
   if (shared) {
-    const uint32_t prototype = builder.beginPrototype();
-    builder.addMesh("tent", tent.mesh());
-    builder.endPrototype();
+    for (size_t i = 0; i < tent.positions.size(); i += 3) tent.positions[i] += own;
+    const Affine back = Affine::fromParts({-own, 0, 0}, {0, 0, 0}, {1, 1, 1});
+    for (Affine& p : places) p = p * back;
+    const uint32_t prototype = addPrototype(builder, tent.mesh());
     for (const Affine& p : places) builder.addInstance(prototype, p);
   } else {
     for (const Affine& p : places) builder.addMesh("tent", tent.mesh(), p);
@@ -116,6 +125,42 @@ TEST(Instances, FarFromTheOriginToo) {
   expectSameHits(shared, tents(false, 1e6), 1e-3f);
 }
 
+TEST(Instances, OfAMeshFarFromItsOriginToo) {
+  expectSameHits(tents(true, 0.0, 1e6), tents(false), 1e-3f);
+}
+
+// Corners of small triangles far away round to each other in the coordinates of the scene.
+TEST(Instances, HaveTheNormalsOfTheirPrototype) {
+  SceneBuilder builder("tents");
+  const Tent tent(builder);
+  addFloor(builder, 0.0);
+  const uint32_t prototype = addPrototype(builder, tent.mesh());
+  const std::vector<Affine> places{turned(1.0, {1e-4, 1e-4, 1e-4}, {1000, 0, 0}),
+                                   turned(1.0, {-1e-4, 1e-4, 1e-4}, {1000, 5, 0})};
+  for (const Affine& p : places) builder.addInstance(prototype, p);
+  const Scene scene = builder.finish();
+  const Accelerator accel(scene);
+  for (size_t i = 0; i < 2; ++i) {
+    const FilePoint middle = places[i].point({0, 0.5, 0});
+    const Vec3 towards = fromOrigin(middle, scene.origin);
+    Rng rng(streamKey(9, 1u), i);
+    size_t hits = 0;
+    for (int k = 0; k < 2000; ++k) {
+      const Vec3 direction = sampleSphere(rng.next(), rng.next());
+      SurfacePoint hit;
+      if (!accel.closestHit(towards - 0.01f * direction, direction, hit)) continue;
+      if (hit.instance == kNone) continue;
+      ++hits;
+      const Triangle& t = scene.triangles[hit.triangle];
+      const Vec3 own = cross(scene.positions[t.position[1]] - scene.positions[t.position[0]],
+                             scene.positions[t.position[2]] - scene.positions[t.position[0]]);
+      const Vec3 right = places[i].normal({double{own.x}, double{own.y}, double{own.z}});
+      EXPECT_NEAR(std::fabs(dot(hit.ng, right)), 1.0f, 1e-4f);
+    }
+    EXPECT_GT(hits, 100u) << i;
+  }
+}
+
 TEST(Instances, AreStoredOnce) {
   const Scene shared = tents(true), flat = tents(false);
   EXPECT_EQ(shared.instances.size(), kPlaces.size());
@@ -141,9 +186,7 @@ TEST(Instances, TheHashKnowsWhereTheyStand) {
     SceneBuilder builder("tents");
     const Tent tent(builder);
     addFloor(builder, 0.0);
-    const uint32_t prototype = builder.beginPrototype();
-    builder.addMesh("tent", tent.mesh());
-    builder.endPrototype();
+    const uint32_t prototype = addPrototype(builder, tent.mesh());
     builder.addInstance(prototype, turned(0.0, {1, 1, 1}, {x, 0, 0}));
     builder.addInstance(prototype, turned(0.0, {1, 1, 1}, {4, 0, 0}));
     return builder.finish().contentHash;
@@ -155,9 +198,7 @@ TEST(Instances, TheHashKnowsWhereTheyStand) {
 TEST(Instances, OneAloneIsStoredWhereItStands) {
   SceneBuilder builder("tents");
   const Tent tent(builder);
-  const uint32_t prototype = builder.beginPrototype();
-  builder.addMesh("tent", tent.mesh());
-  builder.endPrototype();
+  const uint32_t prototype = addPrototype(builder, tent.mesh());
   builder.addInstance(prototype, kPlaces[1]);
   const Scene scene = builder.finish();
   EXPECT_TRUE(scene.instances.empty());
@@ -169,9 +210,7 @@ TEST(Instances, WithoutVolumeAreLeftOut) {
   SceneBuilder builder("tents");
   const Tent tent(builder);
   addFloor(builder, 0.0);
-  const uint32_t prototype = builder.beginPrototype();
-  builder.addMesh("tent", tent.mesh());
-  builder.endPrototype();
+  const uint32_t prototype = addPrototype(builder, tent.mesh());
   for (int i = 0; i < 2; ++i) builder.addInstance(prototype, turned(0.0, {1, 0, 1}, {0, 0, 0}));
   const Scene scene = builder.finish();
   EXPECT_TRUE(scene.instances.empty());

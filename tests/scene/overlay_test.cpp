@@ -90,6 +90,28 @@ TEST_F(Overlay, ItsFilmAndCameraComeFirst) {
   EXPECT_EQ(two.views[1].film.width, 20u);
 }
 
+TEST_F(Overlay, ASkyShinesOnceFromSeveralPlaces) {
+  write("sub/house.toml",
+        "[[mesh]]\nfile = \"square.obj\"\n[[light]]\ntype = \"environment\"\nradiance = [1, 1, 1]\n"
+        "[[light]]\ntype = \"point\"\nposition = [0, 0, 1]\npower = [1, 1, 1]\n");
+  const Scene s = load(kFilmAndCamera + mesh("house.toml") +
+                       "[[mesh.instance]]\n[[mesh.instance]]\ntranslate = [3, 0, 0]\n");
+  EXPECT_EQ(std::ranges::count(s.lights, LightType::Environment, &LightSpec::type), 1);
+  EXPECT_EQ(std::ranges::count(s.lights, LightType::Point, &LightSpec::type), 2);
+  EXPECT_EQ(countContaining(s.warnings, "skies and suns shine once"), 1u);
+}
+
+TEST_F(Overlay, ALensIsScaledWithItsFile) {
+  write("sub/lens.pbrt",
+        "Camera \"perspective\" \"float fov\" 40 \"float lensradius\" 2 \"float focaldistance\" "
+        "300\nInclude \"square.pbrt\"\n");
+  write("sub/square.pbrt", "WorldBegin\n" + kPbrtSquare);
+  const Camera camera = load(mesh("lens.pbrt", "scale = 0.01\n")).camera;
+  EXPECT_NEAR(camera.lensRadius, 0.02f, 1e-6f);
+  EXPECT_NEAR(camera.focusDistance, 3.0f, 1e-5f);
+  EXPECT_NE(loadError(mesh("lens.pbrt", "scale = 1e8\n")).find("lens"), std::string::npos);
+}
+
 TEST_F(Overlay, TheFiltersOfFilesCountUnlessTheFilmNamesOne) {
   write("sub/soft.pbrt", "PixelFilter \"gaussian\"\nInclude \"room.pbrt\"\n");
   const FilterSpec gaussian{FilterKind::Gaussian, 1.5f}, mitchell{FilterKind::Mitchell, 1.0f};

@@ -125,6 +125,15 @@ TEST(DirectLight, RareBrightTexelsHaveTheirPower) {
   }
 }
 
+// They cannot be averaged one by one where they are 10^12, which takes hours.
+TEST(DirectLight, CheckerboardsOfVeryManySquaresHaveTheirPower) {
+  Scene scene = texelScene({{{0, 0}, {1, 0}, {1, 1}, {0, 1}}});
+  scene.expressions = {constantExpression(Vec3(1)), constantExpression(Vec3(0)),
+                       checkerboardExpression(0, 1, {1e6f, 0, 0, 0, 1e6f, 0})};
+  scene.materials[0].emissionTexture = 2;
+  expectClose(Lit(std::move(scene)).lights.power(0), Vec3(10, 5, 1) * kPi, 0.02f);
+}
+
 // Half a texel may lie outside the lamp, so the reference averages over many points.
 TEST(DirectLight, PowerOfATextureCutByTheTriangle) {
   const std::array<std::array<float, 2>, 4> uv{

@@ -199,6 +199,21 @@ TEST(Emission, PicksFollowPower) {
   expectClose(lights.totalPower(), Vec3(16.0f * kPi), 1e-5f);
 }
 
+// MIS of photons and rays needs the density of every photon, at the rounded rim of a sun, too.
+TEST(Emission, PhotonsOfNarrowSunsHaveTheirDensity) {
+  for (const float diameterDeg : {0.0002f, 0.001f, 0.53f}) {
+    Scene scene = floorScene();
+    scene.lights.push_back(sun(diameterDeg));
+    const Accelerator accel(scene);
+    const LightSet lights(accel);
+    Rng rng(streamKey(4, Stream::Photons), 1);
+    for (int k = 0; k < 20000; ++k) {
+      const PhotonStart start = lights.emit(0, rng);
+      ASSERT_GT(lights.photonDensity(0, -start.direction), 0.0f) << diameterDeg;
+    }
+  }
+}
+
 TEST(Emission, NarrowSpotKeepsItsPower) {
   for (const float coneDeg : {0.01f, 0.1f, 1.0f, 120.0f, 180.0f}) {
     LightSpec s = spot();

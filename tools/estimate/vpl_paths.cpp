@@ -27,7 +27,8 @@ std::string encode(const std::vector<uint8_t>& done, const PathResult& result) {
 
 double PathSums::variance() const {
   const auto n = static_cast<double>(points);
-  if (points < 2) return 0.0;
+  if (points == 0) return 0.0;
+  if (points == 1) return meanFlux() * meanFlux();  // that of a single photon, too
   return std::max(0.0, squares - meanFlux() * meanFlux() / n) * n / (n - 1.0);
 }
 

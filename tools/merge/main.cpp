@@ -46,7 +46,7 @@ int runMerge(const std::vector<fs::path>& inputs, const MergeOutput& output,
   } else {
     read = stage.merge(shards, output, files, summary);
     for (const fs::path& file : read) used.reads("an input of the shards", file);
-    used.check();
+    used.ready();
     shards.verifyRest();
   }
   summary.add("shards", inputs.size(), "merged " + std::to_string(inputs.size()) + " files");

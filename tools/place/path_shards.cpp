@@ -94,8 +94,10 @@ PlaceResult traceShard(const std::string& scene, uint64_t count, double spare, c
   if (progress) progress(trace.soFar().rows);
   Wave wave;
   while (trace.rowsLeft() > 0.0) {
-    if (trace.paths() >= effortFor(count))
+    if (trace.paths() >= effortFor(count)) {
+      if (trace.soFar().rows >= trace.rowsOfPart()) break;  // what is left is spare
       failTooFew(scene, trace.soFar(), trace.soFar().rows, trace.rowsOfPart());
+    }
     traceWave(
         wave, trace.chunksLeft(), [&](size_t k) { return trace.unit(k); }, tracePaths);
     const uint64_t before = trace.soFar().rows;

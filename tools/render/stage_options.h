@@ -56,7 +56,8 @@ inline constexpr SwitchOption kTransparentOption = inTopic(
 inline constexpr TextOption kCropOption =
     optional(textOption("crop", "", "X0,Y0,X1,Y1",
                         "render only columns X0 to before X1, rows Y0 to before Y1; they count "
-                        "from the upper left pixel, and crops assemble into the whole image"));
+                        "from the upper left pixel, and crops assemble into the whole image; with "
+                        "VPLs it needs --fireflies keep"));
 inline constexpr SwitchOption kForDenoiserOption = unrecorded(inTopic(
     Topic::Quality,
     switchOption("for-denoiser", "off",

@@ -66,7 +66,9 @@ class MaterialInputs {
   }
   Vec3 share(const Colour& c) const { return min(max(raw(c), Vec3()), Vec3(1)); }
   float share(const Scalar& s) const { return std::clamp(raw(s), 0.0f, 1.0f); }
-  float ior(const Scalar& s) const { return std::clamp(raw(s), 1.0f, 100.0f); }
+  // The index of a coat, whose tables begin at 1, and of a body, which may be air in water.
+  float coatIor(const Scalar& s) const { return std::clamp(raw(s), 1.0f, 100.0f); }
+  float ior(const Scalar& s) const { return std::clamp(raw(s), 0.01f, 100.0f); }
   const SurfacePoint& point() const { return point_; }
   bool front() const { return point_.front; }
   const Scene& scene() const { return scene_; }

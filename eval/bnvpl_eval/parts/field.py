@@ -9,9 +9,12 @@ import math
 import re
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
-from .. import measures, pipeline
+import numpy as np
+
+from .. import images, measures, pipeline
 from ..context import Context
 from ..runner import TookTooLong, ToolFailed
 from ..settings import ROOT, View
@@ -24,6 +27,7 @@ EQUAL_VPLS, EQUAL_TIME = "equal VPLs", "equal time"
 MAX_SPP = 1024  # at equal time
 CLOSE_ENOUGH = 0.05  # to the time, for a number of samples that has been run
 REFUSED = 2  # exit code of vpl-render
+LAYERS = ("", "indirect")
 SHAPES = (
     "Discs are VPLs, black or white squares receivers. A line is a shadow ray, a cross where it is "
     "blocked; a dashed line is light without a ray of its own. Colours tell clusters apart."
@@ -127,7 +131,7 @@ class Field:
         c = self.configuration(view, gather, NONE, count)
         pipeline.lit(self.context.runner, view, c, 1)  # whose time does not count
         try:
-            with self.context.runner.limited(limit_s):
+            with self.context.runner.limited("vpl-render", limit_s):
                 self.unless_refused(
                     gather, NONE, lambda: pipeline.image(self.context.runner, view, c, 1)
                 )
@@ -151,7 +155,7 @@ class Field:
         pipeline.lit(runner, view, c, 1)
 
         def cpu_s(spp: int) -> float:
-            with runner.limited(2.0 * spp * time_s):  # no half a sample fits into the time
+            with runner.limited("vpl-render", 2.0 * spp * time_s):  # no half a sample fits into the time
                 _, runs = pipeline.image(runner, view, c.but(spp=spp), 1)
             return float(runs[-1].cpu_s)
 
@@ -211,13 +215,27 @@ def identity(row: dict[str, Any]) -> str:
     return f"{row['gather']}-{row['compensate']}"
 
 
+def mean_reference(context: Context, view: View) -> Path:
+    """The mean of both halves, which has half of the variance of one."""
+    layers = {layer: np.mean(context.halves(view, layer), axis=0) for layer in LAYERS}
+    file = context.runner.cache / f"reference-{view.name}-{context.size['film_width']}.exr"
+    images.write_half(file, layers, "mean of both halves of the reference")
+    return file
+
+
 def add_pictures(context: Context, view: View, rows: list[dict[str, Any]]) -> None:
-    a, _ = measures.halves(context, view).values()
-    shown = [{"id": "reference", "label": "reference", "file": a}]
+    shown = [{"id": "reference", "label": "reference", "file": mean_reference(context, view)}]
     for row in rows:
         row["picture"] = {"scene": view.scene.id, "view": view.id, "image": identity(row)}
-        label = f"{row['gather']}, {row['compensate']}"
-        shown.append({"id": identity(row), "label": label, "file": row["images"][0]})
+        shown.append(
+            {
+                "id": identity(row),
+                "label": f"{row['gather']}, {row['compensate']}",
+                "file": row["images"][0],
+                "numbers": f"in the table: mean ratio {row['mean_ratio']:.3f}, relMSE "
+                f"{row['relmse']:.3g} ({row['seeds']} seeds)",
+            }
+        )
     default = [identity(row) for row in rows if row["gather"] == DEFAULT_GATHER]
     c = context.configuration(view, "local")
     vpls = context.size["equal_time_vpls"]

@@ -83,7 +83,7 @@ void copyElement(const Elements& from, size_t i, const Read& read, T* to) {
 
 // read(bytes, componentType) converts a component to a T.
 template <typename T, typename Read>
-std::vector<T> readElements(const GltfModel& model, int index, size_t components,
+std::vector<T> readElements(const GltfModel& model, int index, size_t components, size_t known,
                             const Read& read) {
   const auto& accessor = model.parts().accessors[static_cast<size_t>(index)];
   const std::string pointer = gltfPointer("accessors", static_cast<size_t>(index));
@@ -99,7 +99,7 @@ std::vector<T> readElements(const GltfModel& model, int index, size_t components
                                     components, accessor.componentType);
     out.resize(count * components);
     for (size_t i = 0; i < count; ++i) copyElement(all, i, read, &out[i * components]);
-  } else if (count > kMaxZeros) {
+  } else if (count > std::max(kMaxZeros, known)) {
     model.fail(pointer,
                "has " + std::to_string(count) + " elements but no 'bufferView'; give it one");
   } else {
@@ -130,9 +130,10 @@ std::vector<T> readElements(const GltfModel& model, int index, size_t components
 
 }  // namespace
 
-std::vector<double> readNumbers(const GltfModel& model, int accessor, size_t components) {
+std::vector<double> readNumbers(const GltfModel& model, int accessor, size_t components,
+                                size_t known) {
   const bool normalized = model.parts().accessors[static_cast<size_t>(accessor)].normalized;
-  return readElements<double>(model, accessor, components, [&](const char* bytes, int type) {
+  return readElements<double>(model, accessor, components, known, [&](const char* bytes, int type) {
     return numberAt(bytes, type, normalized);
   });
 }
@@ -147,7 +148,7 @@ std::vector<uint32_t> readIndices(const GltfModel& model, int accessor) {
       model.fail(gltfPointer("accessors", static_cast<size_t>(accessor)) + "/componentType",
                  std::string("indices must be unsigned integers") + kExportAgain);
   }
-  return readElements<uint32_t>(model, accessor, 1, [](const char* bytes, int type) {
+  return readElements<uint32_t>(model, accessor, 1, 0, [](const char* bytes, int type) {
     return static_cast<uint32_t>(numberAt(bytes, type, false));
   });
 }

@@ -116,6 +116,7 @@ class MaterialReader {
       m.opacityTexture = textures_.alpha(base);
     } else if (from_.alphaMode == "BLEND" && alpha > 0.0f && alpha < 1.0f) {
       addTransparency({alpha, textures_.alpha(base)}, builder_, m);
+      fadeEmission(alpha, textures_.alpha(base), m);
       warn(
           "alphaMode BLEND: light goes straight through in proportion to alpha, but not to "
           "shadow rays");
@@ -125,6 +126,15 @@ class MaterialReader {
       if (m.opacityTexture != kNone)
         warn("alphaMode BLEND with a texture's alpha: cut away below 0.5, opaque above");
     }
+  }
+
+  // Alpha weights all that a surface sends, its emission included.
+  void fadeEmission(float alpha, uint32_t image, Material& m) {
+    m.emission *= alpha;
+    if (isBlack(m.emission) || image == kNone) return;
+    m.emissionTexture = m.emissionTexture == kNone
+                            ? image
+                            : builder_.addExpression(productExpression(m.emissionTexture, image));
   }
 
   const GltfModel& model_;

@@ -74,7 +74,7 @@ void morph(const GltfModel& model, const tinygltf::Primitive& primitive, const s
   for (size_t t = 0; t < std::min(weights.size(), primitive.targets.size()); ++t) {
     const auto it = primitive.targets[t].find(attribute);
     if (weights[t] == 0.0 || it == primitive.targets[t].end() || values.empty()) continue;
-    const std::vector<double> differences = readNumbers(model, it->second, 3);
+    const std::vector<double> differences = readNumbers(model, it->second, 3, values.size() / 3);
     if (differences.size() != values.size())
       model.fail(pointer + "/targets/" + std::to_string(t),
                  "has another number of vertices than the mesh; export the file again");

@@ -91,10 +91,12 @@ void readMetallicRoughness(const tinyobj::material_t& in, const MtlKeys& keys, c
     warn("map_refl is ignored: it is metal throughout");
   if (const float amount = transmissionOf(in, keys); amount > 0.0f)
     addGlass(in, amount, builder, m);
-  if (keys.has("d") && in.dissolve > 0.0f && in.dissolve < 1.0f) {
+  const bool stated = keys.has("d") || keys.has("Tr");  // Tr is 1 - d
+  if (stated && in.dissolve > 0.0f && in.dissolve < 1.0f) {
     addTransparency({static_cast<float>(in.dissolve)}, builder, m);
-    warn("d: light goes straight through in proportion to 1 - d, but not to shadow rays");
-  } else if (keys.has("d") && in.dissolve <= 0.0f) {
+    warn(std::string(keys.has("d") ? "d" : "Tr") +
+         ": light goes straight through in proportion to 1 - d, but not to shadow rays");
+  } else if (stated && in.dissolve <= 0.0f) {
     m.opacity = 0.0f;
   }
 }

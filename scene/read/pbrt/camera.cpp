@@ -13,15 +13,12 @@ namespace {
 // The pixels that are rendered: all of the film, or a crop of it.
 struct Pixels {
   Film film;
-  double left = 0, right = 1, top = 0, bottom = 1;  // bounds of the crop as fractions of the film
-  Film cropped() const {
-    const auto side = [](double from, double to, uint32_t n) {
-      return static_cast<uint32_t>(std::max(1.0, std::ceil(to * n) - std::ceil(from * n)));
-    };
-    return {side(left, right, film.width), side(top, bottom, film.height)};
-  }
+  uint32_t left = 0, right = 0, top = 0, bottom = 0;  // bounds of the crop; right > left
+  Film cropped() const { return {right - left, bottom - top}; }
 };
 
+// `inPixels`: the bounds are pixels, else fractions of the film, of which pbrt takes the pixels
+// from ceil(from n) to ceil(to n), computed in floats.
 void readCrop(const Param& window, bool inPixels, Pixels& out) {
   const double w = inPixels ? out.film.width : 1.0, h = inPixels ? out.film.height : 1.0;
   const auto& n = window.numbers;
@@ -29,7 +26,16 @@ void readCrop(const Param& window, bool inPixels, Pixels& out) {
       !(n[0] >= 0 && n[1] > n[0] && n[1] <= w && n[2] >= 0 && n[3] > n[2] && n[3] <= h))
     failAt(window.place, "'" + std::string(inPixels ? "pixelbounds" : "cropwindow") +
                              "' must be xmin xmax ymin ymax within the film");
-  out.left = n[0] / w, out.right = n[1] / w, out.top = n[2] / h, out.bottom = n[3] / h;
+  const auto pixel = [&](double bound, uint32_t size) {
+    const float at = inPixels ? float(bound) : std::ceil(float(bound) * float(size));
+    return static_cast<uint32_t>(at);
+  };
+  const auto take = [&](double from, double to, uint32_t size, uint32_t& first, uint32_t& end) {
+    first = std::min(pixel(from, size), size - 1);
+    end = std::clamp(pixel(to, size), first + 1, size);
+  };
+  take(n[0], n[1], out.film.width, out.left, out.right);
+  take(n[2], n[3], out.film.height, out.top, out.bottom);
 }
 
 Pixels pixelsOf(const Description& description) {
@@ -38,6 +44,7 @@ Pixels pixelsOf(const Description& description) {
   Film& film = out.film;
   film.width = static_cast<uint32_t>(p.integer("xresolution", 1280, 1, kMaxFilmSide));
   film.height = static_cast<uint32_t>(p.integer("yresolution", 720, 1, kMaxFilmSide));
+  out.right = film.width, out.bottom = film.height;
   if (const Param* crop = p.find("cropwindow", {ParamType::Float}, "four floats"))
     readCrop(*crop, false, out);
   if (const Param* crop = p.find("pixelbounds", {ParamType::Integer}, "four integers"))
@@ -88,8 +95,12 @@ void aim(const Window& window, const Pixels& pixels, Camera& camera) {
   const Film cropped = pixels.cropped();
   const double part = double(cropped.height) / double(pixels.film.height);
   camera.verticalFovRad = static_cast<float>(2.0 * std::atan(half * part));
-  const double x = window.centreX + half * aspect * (pixels.left + pixels.right - 1.0);
-  const double y = window.centreY + half * (1.0 - pixels.top - pixels.bottom);
+  const auto centre = [](uint32_t first, uint32_t end, uint32_t size) {
+    return double(first + end) / double(size) - 1.0;  // the film is from -1 to 1
+  };
+  const double x =
+      window.centreX + half * aspect * centre(pixels.left, pixels.right, pixels.film.width);
+  const double y = window.centreY - half * centre(pixels.top, pixels.bottom, pixels.film.height);
   camera.shift = {static_cast<float>(x / (2.0 * half * part)),
                   static_cast<float>(y / (2.0 * half * part))};
 }

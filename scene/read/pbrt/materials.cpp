@@ -106,7 +106,7 @@ std::optional<MaterialModel> Materials::Maker::modelOf(const Entity& e) {
     ignoreMedium(e);
     CoatedDiffuseModel m;
     m.reflectance = textures_.colour(p, "reflectance", Vec3{0.5f});
-    m.ior = Scalar(float(r_.colors.ior(p, "eta", 1.5)));
+    m.ior = Scalar(float(r_.colors.coatIor(p, "eta", 1.5)));
     m.roughness = roughness(p);
     return m;
   }
@@ -169,7 +169,7 @@ MaterialModel Materials::Maker::coatedConductor(const Entity& e) {
   CoatedConductorModel m;
   m.fresnel = conductor(p, "conductor.");
   m.roughness = roughness(p, "conductor.");
-  m.coatIor = Scalar(float(r_.colors.ior(p, "interface.eta", 1.5)));
+  m.coatIor = Scalar(float(r_.colors.coatIor(p, "interface.eta", 1.5)));
   m.coatRoughness = roughness(p, "interface.");
   return m;
 }

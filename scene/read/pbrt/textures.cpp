@@ -82,7 +82,7 @@ std::optional<uint32_t> Textures::mask(const Params& params, const std::string& 
   use->mask = true;
   use->scale = {uv.a, uv.e};
   use->offset = {uv.c, uv.f};
-  made_.try_emplace(t, kNone);
+  masks_.insert(t);
   return builder_.addTexture(*use);
 }
 
@@ -180,7 +180,9 @@ UvTransform Textures::mapping(const TextureEntity& t) {
 }
 
 void Textures::noteUnused() const {
-  for (const auto& [texture, expression] : made_) {
+  std::set<const TextureEntity*> read = masks_;
+  for (const auto& [texture, expression] : made_) read.insert(texture);
+  for (const TextureEntity* texture : read) {
     for (const Param* p : texture->params.unused()) {
       notes_.add(p->place, "Texture \"" + texture->type + "\": parameter '" + p->name +
                                "' is unknown and ignored");

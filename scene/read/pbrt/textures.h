@@ -51,6 +51,7 @@ class Textures {
   Notes& notes_;
   SceneBuilder& builder_;
   std::map<const TextureEntity*, uint32_t> made_;
+  std::set<const TextureEntity*> masks_;  // read as plain masks, which need no expression
   std::set<const TextureEntity*> making_;
 };
 

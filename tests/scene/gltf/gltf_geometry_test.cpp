@@ -239,6 +239,30 @@ TEST_F(GltfGeometry, MorphTargetsHaveTheirWeights) {
   expectCorners(s, 1, {Vec3{5, 0, 1}, Vec3{6, 0, 0}, Vec3{5, 1.5f, 0}});
 }
 
+// Exporters write shape keys that move a few of many vertices in this form.
+TEST_F(GltfGeometry, MorphTargetsOfManyVerticesMayBeSparse) {
+  constexpr size_t kVertices = 69'999;
+  std::vector<float> positions;
+  for (size_t i = 0; i < kVertices; ++i)
+    positions.insert(positions.end(),
+                     {float(i), i % 3 == 1 ? 1.0f : 0.0f, i % 3 == 2 ? 1.0f : 0.0f});
+  Gltf g;
+  g.addAccessor(floats(positions), kVertices, "VEC3");
+  const size_t places = g.addView(bytesOf(std::vector<uint32_t>{kVertices - 1})),
+               values = g.addView(floats({0, 0, 4}));
+  g.add("accessors", "{\"componentType\":5126,\"count\":" + std::to_string(kVertices) +
+                         ",\"type\":\"VEC3\",\"min\":[0,0,0],\"max\":[0,0,4],"
+                         "\"sparse\":{\"count\":1,\"indices\":{\"bufferView\":" +
+                         std::to_string(places) +
+                         ",\"componentType\":5125},\"values\":{\"bufferView\":" +
+                         std::to_string(values) + "}}}");
+  g.add("meshes",
+        "{\"weights\":[1],\"primitives\":[{\"attributes\":{\"POSITION\":0},\"targets\":"
+        "[{\"POSITION\":1}]}]}");
+  g.show("{\"mesh\":0}");
+  EXPECT_EQ(load(g).bounds.upper.z, 5.0f);
+}
+
 TEST_F(GltfGeometry, DecodesMeshopt) {
   const std::vector<uint16_t> indices{0, 1, 2};
   std::vector<unsigned char> vertices(meshopt_encodeVertexBufferBound(3, 12)),

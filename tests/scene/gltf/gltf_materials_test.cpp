@@ -154,6 +154,14 @@ TEST_F(GltfMaterials, AlphaModes) {
   EXPECT_EQ(countContaining(blend.warnings, "BLEND"), 1u);
 
   EXPECT_TRUE(materialNamed(load3("\"alphaMode\":\"BLEND\",", "1"), "a").masked());
+
+  // Emission is composited as reflected light is.
+  const Scene lamp = load3("\"alphaMode\":\"BLEND\",\"emissiveFactor\":[1,0.5,0],", "0.25");
+  const Material& shining = materialNamed(lamp, "a");
+  EXPECT_LT(length(lamp.emissionAt(shining, 0.25f, 0.75f) - Vec3(0.25f, 0.125f, 0)), 1e-5f);
+  EXPECT_LT(
+      length(lamp.emissionAt(shining, 0.75f, 0.25f) - Vec3(0.25f, 0.125f, 0) * (128 / 255.0f)),
+      1e-5f);
 }
 
 TEST_F(GltfMaterials, TextureTransformsMoveTurnAndScale) {

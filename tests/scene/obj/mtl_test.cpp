@@ -84,6 +84,15 @@ TEST_F(Mtl, PartlyTransparentIsSeenThrough) {
   EXPECT_FALSE(of(s).masked());
 }
 
+TEST_F(Mtl, TrIsOneMinusD) {
+  const Scene s = paint("newmtl paint\nKd 1 1 1\nPr 0.1\nTr 0.8\n");
+  ASSERT_TRUE(std::holds_alternative<MixModel>(of(s).model));
+  EXPECT_FLOAT_EQ(std::get<MixModel>(of(s).model).amount.value, 0.2f);
+  EXPECT_EQ(countContaining(s.warnings, "Tr: light goes straight through"), 1u);
+  for (const std::string metal : {"", "Pr 0.1\n"})
+    EXPECT_TRUE(of(paint("newmtl paint\nKd 1 1 1\n" + metal + "Tr 1\n")).masked()) << metal;
+}
+
 // Blender omits the factor beside a map.
 TEST_F(Mtl, MapsReplaceFactorsThatAreNotThere) {
   writeImage("r.tga", {255, 0, 0, 255}, {255, 0, 0, 255});

@@ -88,6 +88,25 @@ TEST_F(PbrtCamera, CropsArePartOfTheFilm) {
               {"cropwindow", "xmin xmax ymin ymax"});
 }
 
+// ceil() of a fraction that was made from a whole number of pixels may be one more.
+TEST_F(PbrtCamera, CropsHaveThePixelsOfPbrt) {
+  const std::string camera = "Camera \"perspective\" \"float fov\" 60\n";
+  const auto film = [](int width) {
+    return "Film \"rgb\" \"integer xresolution\" " + std::to_string(width) +
+           " \"integer yresolution\" 80 ";
+  };
+  for (int end = 1; end <= 1920; end += 7) {
+    const std::string bounds = "\"integer pixelbounds\" [0 " + std::to_string(end) + " 0 80]";
+    ASSERT_EQ(view(camera + film(1920) + bounds).film.width, uint32_t(end));
+  }
+  EXPECT_EQ(view(camera + film(400) + "\"float cropwindow\" [0 0.55 0 1]").film.width, 220u);
+  const Scene whole = view(camera + film(100)),
+              part = view(camera + film(100) + "\"float cropwindow\" [0.335 0.665 0 1]");
+  ASSERT_EQ(part.film.width, 33u);  // 34 to 66
+  expectNear(cameraDirection(part.camera, part.film, 0.0f, 0.5f),
+             cameraDirection(whole.camera, whole.film, 0.34f, 0.5f), 1e-6f);
+}
+
 TEST_F(PbrtCamera, ScreenWindowsMayLieAnywhere) {
   const std::string camera = "Camera \"perspective\" \"float fov\" 90 \"float screenwindow\" ";
   const Scene s = view(camera + "[0 2 0.5 2.5]", "100 100");

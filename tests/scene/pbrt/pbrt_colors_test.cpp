@@ -87,8 +87,14 @@ TEST_F(PbrtSpd, FilesAndPairs) {
     return std::get<DiffuseModel>(s.materials.back().model).reflectance.value;
   };
   expectNear(reflectance("\"grey.spd\""), Vec3{0.25f}, 1e-3f);
-  expectNear(reflectance("[400 0.5 700 0.5]"), Vec3{0.5f}, 1e-3f);
-  EXPECT_GT(reflectance("[500 0 600 1]").x, 0.8f);
+  expectNear(reflectance("[400 0.5 700 0.5]"), Vec3{0.5f}, 2e-3f);
+  EXPECT_GT(reflectance("[500 0 600 1 700 1]").x, 0.8f);
+  // Beyond its samples a spectrum is 0.
+  expectNear(reflectance("[600 0.8 700 0.8]"), reflectance("[599.9 0 600 0.8 700 0.8 700.1 0]"),
+             1e-2f);
+  EXPECT_LT(reflectance("[600 0.8 700 0.8]").z, 0.1f);
+  const Scene one = loadWorld(surface + "[550 0.5]\n");
+  EXPECT_EQ(countContaining(one.warnings, "one sample"), 1u);
   expectError("WorldBegin " + surface + "[500 0 400 1]\n" + kSquareShape, "1:31", {"rising"});
   expectError("WorldBegin " + surface + "\"none.spd\"\n" + kSquareShape, "1:31", {"none.spd"});
   write("bad.spd", "400 x");

@@ -73,10 +73,16 @@ TEST_F(PbrtMaterials, Conductors) {
 
 TEST_F(PbrtMaterials, Dielectrics) {
   EXPECT_EQ(model<DielectricModel>("Material \"dielectric\" \"float eta\" 1.33").ior.value, 1.33f);
+  EXPECT_EQ(model<DielectricModel>("Material \"dielectric\" \"float eta\" 0.75").ior.value, 0.75f);
   EXPECT_TRUE(model<DielectricModel>("Material \"thindielectric\"").thin);
+  const Scene thin = loadWorld("Material \"coateddiffuse\" \"float eta\" 0.8\n");
+  EXPECT_EQ(std::get<CoatedDiffuseModel>(thin.materials.back().model).ior.value, 1.0f);
+  EXPECT_EQ(countContaining(thin.warnings, "of a coat below 1 counts as 1"), 1u);
   EXPECT_NEAR(
       model<DielectricModel>("Material \"dielectric\" \"spectrum eta\" \"glass-BK7\"").ior.value,
       1.5168f, 1e-4f);
+  EXPECT_EQ(model<DielectricModel>("Material \"dielectric\" \"spectrum eta\" [500 1.4]").ior.value,
+            1.4f);
 }
 
 TEST_F(PbrtMaterials, MixesAndWhatIsNotRead) {
@@ -181,6 +187,17 @@ TEST_F(PbrtMaterials, AlphaCutsAway) {
   EXPECT_GT(s.textures.at(m.opacityMap).lookupAlpha(0.25f, 0.5f), 0.9f);
   EXPECT_LT(s.textures.at(m.opacityMap).lookupAlpha(0.75f, 0.5f), 0.1f);
   EXPECT_EQ(s.maskedBegin, 0u);
+  // A mask that another texture uses, too, is the same image there.
+  write("leaf.tga", tga(2, 1, {{255, 255, 255, 255}, {0, 0, 0, 255}}));
+  const Scene both = loadWorld(
+      "Texture \"a\" \"float\" \"imagemap\" \"string filename\" \"leaf.tga\"\n"
+      "Texture \"b\" \"float\" \"scale\" \"texture tex\" \"a\" \"float scale\" 0.9\n"
+      "AttributeBegin\nAttribute \"shape\" \"texture alpha\" \"a\"\n" +
+      kSquareShape + "AttributeEnd\nAttribute \"shape\" \"texture alpha\" \"b\"\n");
+  const Material& faded = both.materials.at(both.triangles.back().material);
+  ASSERT_NE(faded.opacityTexture, kNone);
+  EXPECT_NEAR(both.expressionAt(faded.opacityTexture, 0.25f, 0.5f).x, 0.9f, 0.05f);
+  EXPECT_LT(both.expressionAt(faded.opacityTexture, 0.75f, 0.5f).x, 0.1f);
 }
 
 TEST_F(PbrtMaterials, Relief) {

@@ -86,7 +86,8 @@ TEST_F(PbrtShapes, LoopSubdivision) {
       " \"integer indices\" [0 2 4 2 1 4 1 3 4 3 0 4 2 0 5 1 2 5 3 1 5 0 3 5]";
   const Scene scene = shape(octahedron);
   EXPECT_EQ(scene.triangles.size(), 8u * 256u);
-  EXPECT_EQ(outward(scene, {}), 1.0);
+  EXPECT_EQ(outward(scene, {}), 0.0);  // as in pbrt, its normals are against the winding
+  EXPECT_EQ(outward(shape("ReverseOrientation " + octahedron), {}), 1.0);
   expectNear(scene.bounds.center(), {}, 1e-6f);
   // The limit of a vertex has the weight 1 - 4 g for itself, and its neighbours cancel; g = 1 / (4
   // + 3 / (8 b)), b = 3/32.

@@ -55,7 +55,7 @@ TEST_F(PbrtSyntax, ErrorsNameThePlaceAndTheCure) {
   expectError("WorldBegin\n]", "2:1", {"directive"});
   expectError("AttributeEnd", "1:1", {"AttributeBegin"});
   expectError("AttributeBegin\n", "2:1", {"scene.pbrt:1:1"});
-  expectError("AttributeBegin\nTransformEnd", "2:1", {"another block"});
+  expectError("TransformEnd", "1:1", {"AttributeBegin"});
   expectError("ColorSpace \"acescg\"", "1:1", {"acescg", "rec2020"});
   expectError("ObjectBegin \"a\"\nObjectBegin \"b\"", "2:1", {"ObjectEnd"});
   expectError("ObjectBegin \"a\"\nObjectInstance \"a\"", "2:1", {"nests"});

@@ -7,18 +7,6 @@
 namespace bnvpl {
 namespace {
 
-// Returns `file`, or the absolute path of its nearest existing folder. A relative path could be the
-// name of another target in ninja's graph.
-fs::path nearestTo(const fs::path& file) {
-  std::error_code ignored;
-  fs::path found = file;
-  while (!found.empty() && !fs::exists(found, ignored)) {
-    const fs::path parent = found.parent_path();
-    found = parent == found ? fs::path() : parent;
-  }
-  return found == file ? file : fs::absolute(found.empty() ? fs::path(".") : found);
-}
-
 std::string escaped(const fs::path& file) {
   std::string text;
   for (const char c : file.string()) {
@@ -29,6 +17,17 @@ std::string escaped(const fs::path& file) {
 }
 
 }  // namespace
+
+// A relative path of the folder could be the name of another target in ninja's graph.
+fs::path inDepfile(const fs::path& file) {
+  std::error_code ignored;
+  fs::path found = file;
+  while (!found.empty() && !fs::exists(found, ignored)) {
+    const fs::path parent = found.parent_path();
+    found = parent == found ? fs::path() : parent;
+  }
+  return found == file ? file : fs::absolute(found.empty() ? fs::path(".") : found);
+}
 
 std::string depfileProblem(const fs::path& file) {
   const std::string name = file.string();
@@ -50,8 +49,8 @@ void addDepfile(OutputSet& outputs, const fs::path& depfile, const fs::path& tar
   std::string text = escaped(target) + ":";
   std::set<fs::path> listed;
   for (const fs::path& file : files) {
-    const fs::path near = nearestTo(file);
-    if (listed.insert(near).second) text += " \\\n  " + escaped(near);
+    const fs::path named = inDepfile(file);
+    if (listed.insert(named).second) text += " \\\n  " + escaped(named);
   }
   outputs.add(depfile).write(text + "\n");
 }

@@ -160,7 +160,7 @@ void RunFiles::checkDepfileNames() const {
   });
   if (!asked) return;
   for (const Named& in : inputs_)  // scenes name most of them
-    if (const std::string problem = depfileProblem(in.file); !problem.empty())
+    if (const std::string problem = depfileProblem(inDepfile(in.file)); !problem.empty())
       throw InputError(problem);
   for (const Named& out : outputs_)
     if (const std::string problem = depfileProblem(out.file); !problem.empty())

@@ -172,7 +172,7 @@ void HelpFormatter::addCommands(const CLI::App& cli, const std::string& name, Pa
   for (const CLI::App* sub : commands) {
     const std::string summary = sub->get_description();
     std::string title = "  " + sub->get_name();
-    title.resize(kNameColumns / 2, ' ');
+    title.resize(std::max(kNameColumns / 2, title.size() + 1), ' ');
     page.text += title;
     addParagraphs(summary.substr(0, summary.find('\n')), title.size(), page.width, page.text);
   }

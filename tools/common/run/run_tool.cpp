@@ -1,6 +1,5 @@
 #include "tools/common/run/run_tool.h"
 
-#include <sys/resource.h>
 #include <tbb/global_control.h>
 #include <unistd.h>
 
@@ -15,6 +14,8 @@
 #include <sstream>
 #include <utility>
 
+#include "core/memory.h"
+#include "formats/output_folder.h"
 #include "tools/common/files/escape_text.h"
 #include "tools/common/files/standard_streams.h"
 #include "tools/common/options/cli_errors.h"
@@ -29,12 +30,6 @@
 namespace bnvpl {
 
 namespace {
-
-double peakMemoryMiB() {
-  rusage usage{};
-  ::getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / 1024.0;  // Linux counts in KiB
-}
 
 std::string toolName;  // begins each line on stderr
 std::vector<std::string> heldWarnings;
@@ -92,6 +87,7 @@ int report() {
   static std::atomic_flag ending;
   while (ending.test_and_set()) ::pause();  // another thread ends the process
   removePartialFiles();
+  removePartialFolder();
   if (std::current_exception()) ::_exit(report());
   // When Embree runs out of memory, it throws a second exception while the first unwinds.
   ::_exit(std::uncaught_exceptions() > 0 ? failForMemory() : fail(kExitInternal, "internal error"));
@@ -299,7 +295,7 @@ void Summary::addNonFinite(uint64_t count, const std::string& what) {
 
 Summary::Cost Summary::close(const ToolOptions& options, OutputSet& files) const {
   Json values = values_;
-  const Cost cost{nowS() - startS_, peakMemoryMiB()};
+  const Cost cost{nowS() - startS_, static_cast<double>(peakMemory()) / 0x1p20};
   values["time_s"] = cost.timeS;
   values["peak_memory_MiB"] = cost.memoryMiB;
   if (!options.stats.empty()) files.add(options.stats).write(jsonText(values, 2) + "\n");

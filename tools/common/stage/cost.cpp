@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <fstream>
 
+#include "core/memory.h"
 #include "tools/common/files/standard_streams.h"
 #include "tools/common/options/help.h"
 
@@ -18,16 +19,6 @@ namespace {
 
 constexpr double kMinCpuS = 0.5;   // CPU time of a trial, if the work is that long
 constexpr double kMaxCpuS = 10.0;  // CPU time of all trials, if single units are short
-
-double bytesIn(const char* key) {  // a line of /proc/self/status: "VmHWM:     12345 kB"
-  std::ifstream in("/proc/self/status");
-  unsigned long long kib = 0;
-  const std::string format = std::string(key) + ": %llu kB";
-  for (std::string line; std::getline(in, line);) {
-    if (std::sscanf(line.c_str(), format.c_str(), &kib) == 1) break;
-  }
-  return static_cast<double>(kib) * 1024.0;
-}
 
 struct TriedUnits {
   double cpuS = 0.0, units = 0.0;
@@ -80,11 +71,11 @@ double cpuSecondsSoFar() {
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-MemoryWatch::MemoryWatch() : before_(bytesIn("VmRSS")) {
+MemoryWatch::MemoryWatch() : before_(static_cast<double>(residentMemory())) {
   std::ofstream("/proc/self/clear_refs") << "5\n";  // resets the peak
 }
 
-double MemoryWatch::peak() const { return bytesIn("VmHWM"); }
+double MemoryWatch::peak() const { return static_cast<double>(peakMemory()); }
 
 Cost Cost::ofShard(const std::optional<Shard>& shard) const {
   Cost cost = *this;
@@ -118,7 +109,7 @@ Cost costOfUnits(const std::function<void(const Resume&)>& part, CostTrial& tria
       const double firstS = std::max(0.0, some.cpuS - workS * share - base.cpuS);
       const bool sure = some.units >= units.fewest && ownS >= 0.2 * enoughS;
       const double done = 1.0 - (trial.skippedCpuS() - leftOutS) / std::max(some.cpuS, 1e-9);
-      return {bytesIn("VmHWM"), startS + setupS + firstS, workS, share * done,
+      return {static_cast<double>(peakMemory()), startS + setupS + firstS, workS, share * done,
               sure || shard.whole()};
     }
     const double measuredS = std::max(ownS, 0.03 * std::max(baseS, kMinCpuS));  // above noise

@@ -12,10 +12,11 @@
 namespace bnvpl {
 namespace {
 
-// Options that do not affect the result, or that each shard has for itself.
-constexpr std::array<std::string_view, 11> kOwn{
-    "--output", "--shard",   "--checkpoint",  "--checkpoint-every", "--threads", "--quiet",
-    "--stats",  "--depfile", "--shard-spare", "--estimate",         "--json"};
+// Options that do not affect the result, all flags among them, or that each shard has for itself.
+constexpr std::array<std::string_view, 15> kOwn{
+    "--output",  "--shard",   "--checkpoint",  "--checkpoint-every", "--checkpoint-replace",
+    "--threads", "--quiet",   "--strict",      "--no-clobber",       "--progress",
+    "--stats",   "--depfile", "--shard-spare", "--estimate",         "--json"};
 
 // Parses a number from 1 to kMaxShards, digits only; returns 0 for anything else.
 uint64_t numberOf(const std::string& text) {

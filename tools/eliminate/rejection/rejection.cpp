@@ -94,6 +94,11 @@ std::vector<double> probabilities(const std::vector<double>& brings, double coun
 
 Kept run(const EliminateInputs& in, const Values& options) {
   const VplTable& all = in.candidates;
+  // A kept VPL stands for others elsewhere, so none may have a share of the surface.
+  if (all.reachFactor > 0.0 || all.emitPoints != 1)
+    throw InputError(
+        "--method rejection takes VPLs of vpl-place --method light; these are of "
+        "vpl-estimate");
   const uint64_t key = streamKey(options[kSeedOption], Stream::Eliminate) + 1;
   const std::vector<SurfacePoint> points = cameraPoints(in, key, options[kCameraPointsOption]);
   const VplLights vpls = makeVplLights(all, *in.accel, options.real32(kClampOption));

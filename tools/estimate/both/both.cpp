@@ -20,12 +20,11 @@ namespace {
 constexpr auto kPhotonsOption = inTopic(
     Topic::Main, countOption("photons", "10M", 0x1p36, "",
                              "total work, as a number of photons; paths take a part of it"));
-constexpr auto kIrradianceErrorOption = inTopic(
-    Topic::Speed,
-    realOption(
-        "irradiance-error", "0.005", 0, 1, "",
-        "less work is done if pilots predict this mean relative error of the light in view that comes "
-        "from VPLs; 0: all work is done"));
+constexpr auto kIrradianceErrorOption =
+    inTopic(Topic::Speed, realOption("irradiance-error", "0.005", 0, 1, "",
+                                     "less work is done if pilots predict this mean relative error "
+                                     "of the light in view that comes "
+                                     "from VPLs; 0: all work is done"));
 constexpr auto kMaxBouncesOption = inTopic(
     Topic::Quality,
     wholeOption("max-bounces", "32", 1, 1000, "",
@@ -234,6 +233,12 @@ class Estimator {
       pilots.pointCost.push_back(cost / pilots.points);
       spent += cost;
     }
+    const auto dark = [](const auto& pilot) {
+      return std::ranges::all_of(pilot, [](const auto& p) { return p.flux == 0.0; });
+    };
+    // Nothing tells how to divide the work, as where only photons find the light.
+    if (!trial && dark(pilots.byPhotons) && dark(pilots.byPaths))
+      return photonsAlone(work_ - reported_);
     const Budget budget{std::max(whole - spent, 0.5 * whole), irradianceError()};
     const Split split =
         trial ? splitOfSubset(pilots, budget) : splitWork(in_.vpls, in_.accel, pilots, budget);

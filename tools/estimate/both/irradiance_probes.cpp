@@ -60,7 +60,7 @@ double IrradianceProbes::relativeError(std::span<const double> flux,
     ++lit;
     sum += irradiance > 0.0 ? std::min(1.0, std::sqrt(squared) / irradiance) : 1.0;
   }
-  return lit > 0 ? sum / static_cast<double>(lit) : 0.0;
+  return lit > 0 ? sum / static_cast<double>(lit) : 1.0;  // unknown
 }
 
 }  // namespace bnvpl::methods::estimate::both

@@ -14,11 +14,13 @@ namespace bnvpl::methods::estimate::both {
 // needs light.
 class IrradianceProbes {
  public:
-  // Traces a shadow ray from each probe to each VPL that faces it, about a million in total.
+  // Traces a shadow ray from each probe to each VPL that faces it, up to a million in total, or 16
+  // for each VPL.
   IrradianceProbes(const VplTable& vpls, const Accelerator& accel);
 
   // Standard deviation of the irradiance over the irradiance, clamped to 1 and averaged over the
-  // probes whose irradiance has variance. `flux` (W) and its `variance` have one entry per VPL.
+  // probes whose irradiance has variance; 1 where there is none. `flux` (W) and its `variance` have
+  // one entry per VPL.
   double relativeError(std::span<const double> flux, std::span<const double> variance) const;
 
  private:

@@ -120,8 +120,9 @@ VplStatistics poolPilots(std::span<const uint32_t> wide, const Pilots& pilots,
 
 std::vector<VplStatistics> poolAllPilots(const VplTable& vpls, const Pilots& pilots) {
   const KdTree tree(vpls.position);
-  const Samples anywhere{std::max(meanSample(pilots.byPhotons), 1e-6 * pilots.photonPower),
-                         meanSample(pilots.byPaths)};
+  // A pilot that no photon of reached a VPL tells nothing about photons but their power.
+  const double found = meanSample(pilots.byPhotons);
+  const Samples anywhere{found > 0.0 ? found : pilots.photonPower, meanSample(pilots.byPaths)};
   std::vector<VplStatistics> statistics(vpls.size());
   parallelRanges(vpls.size(), 256, [&](size_t begin, size_t end) {
     std::vector<Neighbour> near;

@@ -31,6 +31,14 @@ TEST(Paths, AgreeWithPhotonsForEachVpl) {
   }
 }
 
+TEST(Paths, OnePointDoesNotTellThatItIsExact) {
+  const World world("cornell/scene.toml");
+  const VplTable vpls = keptVpls(world, {{"count", "50"}}, {{"count", "1k"}});
+  const VplTable lit = lightVpls(world, vpls, {{"method", "paths"}, {"points", "1"}}).table;
+  for (size_t i = 0; i < lit.size(); ++i)
+    EXPECT_EQ(lit.relativeError[i], isBlack(lit.flux[i]) ? 0.0f : 1.0f);
+}
+
 // Bars of a window are far smaller than the reach of their VPLs: the disk of a VPL covers several
 // layers above each other.
 TEST(Paths, AgreeWithPhotonsOnThinLayers) {

@@ -30,7 +30,7 @@ std::string optionText(const Json& value) {
 bool readsScene(const StageRecord& record) { return record.inputs.count("scene") > 0; }
 
 // The commands that rerun link `first` and all after it, each on the output of its predecessor.
-std::string mending(const Links& links, size_t first, const std::string& scene) {
+std::string mending(const Links& links, size_t first, const SceneWords& words) {
   std::string commands;
   for (size_t i = first; i < links.size(); ++i) {
     if (links[i]->chain.empty()) continue;
@@ -38,9 +38,14 @@ std::string mending(const Links& links, size_t first, const std::string& scene) 
     std::vector<std::string> inputs;
     // The stages that always read the scene take it first; vpl-eliminate takes --scene.
     const bool leads = record.tool != "vpl-eliminate";
-    if (readsScene(record) && leads) inputs.push_back(scene);
+    std::vector<std::string> scene = words.scene;
+    if (!record.views.empty()) scene.insert(scene.end(), words.view.begin(), words.view.end());
+    if (readsScene(record) && leads) inputs = scene;
     if (i > 0) inputs.push_back(links[i - 1]->file.string());
-    if (readsScene(record) && !leads) inputs.insert(inputs.end(), {"--scene", scene});
+    if (readsScene(record) && !leads) {
+      inputs.push_back("--scene");
+      inputs.insert(inputs.end(), scene.begin(), scene.end());
+    }
     commands += (commands.empty() ? "" : " && ") + commandOf(record, inputs, links[i]->file) +
                 links[i]->moreOptions;
   }
@@ -152,9 +157,8 @@ std::string commandOf(const StageRecord& record, const std::vector<std::string>&
   return command;
 }
 
-void checkChain(std::span<const CheckedFile> files, const Scene* scene) {
-  const std::string name = scene ? scene->name() : "SCENE",
-                    sceneHash = scene ? hashText(scene->contentHash) : "";
+void checkChain(std::span<const CheckedFile> files, const Scene* scene, const SceneWords& words) {
+  const std::string sceneHash = scene ? hashText(scene->contentHash) : "";
   Links links;
   for (const CheckedFile& f : files) links.push_back(&f);
   std::stable_sort(links.begin(), links.end(), [](const CheckedFile* a, const CheckedFile* b) {
@@ -168,7 +172,8 @@ void checkChain(std::span<const CheckedFile> files, const Scene* scene) {
     std::string broken;
     size_t first = i;  // first link to rerun
     if (!sceneHash.empty() && link.scene != sceneHash) {
-      broken = "made from scene " + link.scene + ", but " + name + " is " + sceneHash;
+      broken =
+          "made from scene " + link.scene + ", but " + words.scene.front() + " is " + sceneHash;
       first = 0;
     } else {
       if (scene) broken = brokenView(link, link.chain.back(), *scene);
@@ -179,7 +184,7 @@ void checkChain(std::span<const CheckedFile> files, const Scene* scene) {
       broken =
           "made by version " + link.chain.back().version + ", the files before it by " + version;
     if (!broken.empty())
-      throw InputError(link.file, broken + "; run: " + mending(links, first, name));
+      throw InputError(link.file, broken + "; run: " + mending(links, first, words));
   }
 }
 

@@ -75,14 +75,21 @@ CheckedFile checkVpl(const fs::path& file) {
   return checked;
 }
 
+// The layer, as --layers names it, that has the channel; empty for the image itself.
+std::string layerOf(const std::string& channel) {
+  const std::string part = channel.substr(0, channel.find('.'));
+  if (part == "R" || part == "G" || part == "B") return {};
+  if (part.starts_with("Crypto")) return part.substr(0, part.find_last_not_of("0123456789") + 1);
+  return part.starts_with("light_") ? "light_groups" : part;
+}
+
 // " --size 640x480 --layers N,direct". The channels, such as "direct.R", tell the layers.
 std::string renderOptions(const Image& image) {
   std::string options =
       " --size " + std::to_string(image.width) + "x" + std::to_string(image.height);
   std::set<std::string> layers;
   for (const ImageChannel& channel : image.channels) {
-    const std::string layer = channel.name.substr(0, channel.name.find('.'));
-    if (layer != "R" && layer != "G" && layer != "B") layers.insert(layer);
+    if (const std::string layer = layerOf(channel.name); !layer.empty()) layers.insert(layer);
   }
   std::string separator = " --layers ";
   for (const std::string& layer : layers) {

@@ -29,6 +29,17 @@ Json describeChecked(const std::vector<CheckedFile>& files, const std::string& s
   return json;
 }
 
+SceneWords wordsOf(const SceneOptions& scene) {
+  SceneWords words{{scene.file.string()}, {}};
+  for (const std::string& define : scene.defines)
+    words.scene.insert(words.scene.end(), {"--define", define});
+  for (const std::string& camera : scene.cameras)
+    words.view.insert(words.view.end(), {"--camera", camera});
+  for (const fs::path& view : scene.views)
+    words.view.insert(words.view.end(), {"--view", view.string()});
+  return words;
+}
+
 struct CheckRequest {
   std::vector<fs::path> files;
   bool deep = false;
@@ -41,7 +52,7 @@ CLI::App* addCheckOptions(CLI::App& cli, CheckRequest& c) {
   sub->add_flag("--deep", c.deep,
                 "require one complete chain of files, checked row by row; an error ends with the "
                 "commands that repair the chain");
-  addSceneFlag(*sub, c.scene, "the scene (.toml) that all files must have been made from");
+  addSceneFlag(*sub, c.scene, "the scene that all files must have been made from");
   addExamples(*sub, {{"whether files are whole and belong together",
                       "vpl-inspect check candidates.vpl vpls.vpl lit.vpl image.exr"},
                      {"every row, against the scene",
@@ -70,7 +81,10 @@ int runCheck(const CheckRequest& command, const ToolOptions& tool) {
   }
   const std::string hash = withScene ? hashText(scene.contentHash) : "";
   if (command.deep) {
-    checkChain(checked, withScene ? &scene : nullptr);
+    if (withScene)
+      checkChain(checked, &scene, wordsOf(command.scene));
+    else
+      checkChain(checked, nullptr);
   } else {
     checkTogether(checked);
     if (withScene) checkScene(checked, scene);

@@ -34,7 +34,7 @@ CLI::App* addPlotOptions(CLI::App& cli, PlotRequest& c) {
   CLI::App* sub =
       cli.add_subcommand("plot", "Draw the rows as dots over the camera's view of the scene.");
   addFile(*sub, "file", c.file, ".vpl")->required();
-  addSceneFlag(*sub, c.scene, "the scene (.toml) that the rows lie on")->required();
+  addSceneFlag(*sub, c.scene, "the scene that the rows lie on")->required();
   addFile(*sub, "-o,--output", c.output, "picture (.png)")->required();
   addReal(*sub, realOption("dot", "", 1, 100, "pixels", "diameter of a dot"), c.plot.dotPixels);
   addChoice(

@@ -58,7 +58,8 @@ int runScene(const SceneRequest& command, const ToolOptions& tool) {
   used.reads("scene", command.scene.file).writes(tool).check();
   std::optional<OutputFolder> folder;
   if (!command.toml.empty()) {
-    if (tool.noClobber && fs::exists(command.toml))
+    std::error_code unreadable;  // which OutputFolder reports
+    if (tool.noClobber && fs::exists(command.toml, unreadable))
       throw OutputError(command.toml, "exists, and --no-clobber keeps it; name another folder");
     requireOutside(command.toml, {command.scene.file}, "the run reads");
     requireOutside(command.toml, {tool.stats, tool.depfile}, "is another output");

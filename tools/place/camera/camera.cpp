@@ -44,6 +44,7 @@ class CameraPath {
     const Bsdf bsdf(accel.scene(), hit);
     const LobeChoice lobes = chooseLobes(bsdf, rng_);
     if (!lobes.specular() && bsdf.hasRough()) {
+      specular_ = 0;
       if (++rough_ >= 2) chunk.add(bsdf, path_);
       if (rough_ >= depth) {
         ++chunk.complete;

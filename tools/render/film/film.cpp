@@ -34,7 +34,7 @@ std::vector<T> cropped(const std::vector<T>& film, uint32_t width, const PixelBo
 // The image of a crop on the film, with zeros around it.
 Image onFilm(const Image& crop, const Film& film, const PixelBox& box) {
   Image image = blankImage(film);
-  image.dataWindow = box;
+  if (box != PixelBox{0, 0, image.width, image.height}) image.dataWindow = box;
   for (const ImageChannel& channel : crop.channels) {
     std::vector<float>& data = image.add(channel.name);
     for (int y = box.y0; y < box.y1; ++y)

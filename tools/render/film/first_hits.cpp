@@ -32,9 +32,7 @@ class FirstHits {
         tiles_(accel.scene().film),
         layers_(firstHitLayers(layers)),
         key_(streamKey(seed, Stream::PixelSamples)),
-        range_{0, static_cast<uint32_t>(std::min(spp, kMaxFirstHitSamples)),
-               static_cast<uint32_t>(std::min<uint64_t>(spp, UINT32_MAX)),
-               std::min<uint64_t>(spp, UINT32_MAX)} {
+        range_{0, raysFor(spp), raysFor(spp), std::min<uint64_t>(spp, UINT32_MAX)} {
     for (const std::string& name : objectMatteNames(accel.scene()))
       objectIds_.push_back(cryptomatteId(name));
     for (const std::string& name : materialMatteNames(accel.scene()))
@@ -54,6 +52,10 @@ class FirstHits {
   }
 
  private:
+  // All of them, so that the filter's negative lobes have their share of the rays.
+  static uint32_t raysFor(uint64_t spp) {
+    return static_cast<uint32_t>(std::min(spp, kMaxFirstHitSamples));
+  }
   PixelHits trace(uint32_t x, uint32_t y) const {
     PixelHits out;
     const Scene& scene = accel_.scene();

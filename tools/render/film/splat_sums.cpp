@@ -55,8 +55,13 @@ SplatSums::Limbs SplatSums::carried(size_t value) const {
 double SplatSums::sum(size_t pixel, size_t c) const {
   const Limbs limbs = carried(3 * pixel + c);
   double sum = 0.0;
-  for (size_t k = 0; k < kLimbs; ++k)
+  // Only the highest limb of a negative sum is negative; the lower ones nearly cancel it, so that a
+  // sum from below would round it away.
+  const bool fromAbove = limbs.back() < 0;
+  for (size_t i = 0; i < kLimbs; ++i) {
+    const size_t k = fromAbove ? kLimbs - 1 - i : i;
     sum += std::ldexp(static_cast<double>(limbs[k]), kLowest + kBits * static_cast<int>(k));
+  }
   return sum;
 }
 

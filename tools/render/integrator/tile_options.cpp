@@ -8,7 +8,7 @@ namespace bnvpl {
 void addDirectLight(const IntegratorInputs& in, const Values& options, const FilmRays& filmRays,
                     const FilmPoints& filmPoints, unsigned lightRays, TileParts& out) {
   if (in.only == Only::Indirect) return;
-  if (lightRays > 0) {
+  if (lightRays > 0 && in.lights.size() > 0) {  // VPLs may come from elsewhere, and light alone
     const uint64_t raysOfTile = uint64_t{kTileSide} * kTileSide * options[kSppOption] * lightRays;
     out.lightRays = lightRays;
     out.lights = std::make_unique<const TileLightSampler>(

@@ -34,12 +34,13 @@ std::optional<FilmConnection> connectToFilm(const Accelerator& accel, const Surf
   const Vec3 way = vertex.position - origin;
   if (dot(vertex.ng, way) >= 0.0f) return {};  // the photon arrived on the other side
   // Traces a camera ray, so that the vertex scatters as for a camera path. Its hit is the vertex if
-  // the triangle is the same or, at an edge, if it lies within the rounding of an offset origin.
+  // the triangle and its instance are the same or, at an edge, if it lies within the rounding of an
+  // offset origin.
   SurfacePoint seen;
   if (!accel.closestHit(origin, way / length(way), seen)) return {};
   const Vec3 tolerance = accel.offsetOrigin(vertex.position, vertex.ng) - vertex.position;
-  if (seen.triangle != vertex.triangle &&
-      lengthSquared(seen.position - vertex.position) > 4.0f * lengthSquared(tolerance)) {
+  const bool same = seen.triangle == vertex.triangle && seen.instance == vertex.instance;
+  if (!same && lengthSquared(seen.position - vertex.position) > 4.0f * lengthSquared(tolerance)) {
     return {};
   }
   const float cosShading = dot(seen.ns, vertex.wo);

@@ -48,7 +48,7 @@ Vec3 CoatedMetal::albedo(Vec3 wo) const {
 void addLobes(const CoatedConductorModel& model, const MaterialInputs& inputs, Vec3 weight,
               Bsdf& out) {
   const Ggx coat = ggxOf(model.coatRoughness, inputs);
-  const float ior = std::min(kMaxAlbedoIor, inputs.ior(model.coatIor));
+  const float ior = std::min(kMaxAlbedoIor, inputs.coatIor(model.coatIor));
   const GgxReflection metal{ggxOf(model.roughness, inputs),
                             metalFresnel(model.fresnel, ior, inputs)};
   out.add(weight, GgxReflection{coat, {FacetFresnel::Kind::Dielectric, Vec3(ior), {}}});

@@ -8,7 +8,7 @@ namespace bnvpl {
 void addLobes(const CoatedDiffuseModel& model, const MaterialInputs& inputs, Vec3 weight,
               Bsdf& out) {
   const Ggx ggx = ggxOf(model.roughness, inputs);
-  const float ior = std::min(kMaxAlbedoIor, inputs.ior(model.ior));
+  const float ior = std::min(kMaxAlbedoIor, inputs.coatIor(model.ior));
   const float alpha = ggx.smooth() ? 0.0f : ggx.meanAlpha();
   const Vec3 base = inputs.share(model.reflectance);
   const float in = 1.0f - dielectricMeanAlbedo(alpha, ior);  // transmitted share of diffuse light

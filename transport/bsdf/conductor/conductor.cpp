@@ -20,8 +20,10 @@ FacetFresnel metalFresnel(const ConductorFresnel& fresnel, float outside,
   FacetFresnel out{FacetFresnel::Kind::Conductor, {}, {}};
   if (fresnel.byReflectance) {
     const Vec3 r = inputs.raw(fresnel.reflectance);
-    out.first = Vec3(1);
-    out.second = {kOfReflectance(r.x), kOfReflectance(r.y), kOfReflectance(r.z)};
+    // The metal has this reflectance in air, also where it lies below a coat, as in pbrt.
+    out.first = Vec3(1.0f / outside);
+    out.second =
+        Vec3{kOfReflectance(r.x), kOfReflectance(r.y), kOfReflectance(r.z)} * (1.0f / outside);
   } else {
     const auto index = [&](const Colour& c) {
       return min(max(inputs.raw(c), Vec3()), Vec3(100)) * (1.0f / outside);

@@ -28,6 +28,24 @@ TEST(Conductor, KeepsToWhatEveryModelDoes) {
   check(materialOf(metal(0.5f, 0.5f, false)), "metal without multiple scattering");
 }
 
+// Below a coat, both indices are relative to the coat's, however the metal is given.
+TEST(Conductor, LiesBelowAnIndex) {
+  const ConductorModel m = white(0, false);
+  const Scene scene = sceneOf(materialOf(m));
+  const SurfacePoint p = seenFrom({0, 0, 1});
+  ConductorFresnel half = m.fresnel, indices;
+  half.reflectance = Vec3(0.5f);
+  indices.eta = Vec3(1);
+  indices.k = Vec3(2);  // reflects 0.5 in air
+  const MaterialInputs inputs(scene, p);
+  for (const float outside : {1.0f, 1.5f}) {
+    const FacetFresnel a = metalFresnel(half, outside, inputs),
+                       b = metalFresnel(indices, outside, inputs);
+    EXPECT_NEAR(a.first.x, b.first.x, 1e-5f);
+    EXPECT_NEAR(a.second.x, b.second.x, 1e-5f);
+  }
+}
+
 TEST(Conductor, AnisotropicKeepsToIt) {
   check(materialOf(metal(0.1f, 0.3f)), "brushed", 0.03f);
   check(materialOf(metal(0.35f, 0.7f)), "rough and brushed", 0.03f);

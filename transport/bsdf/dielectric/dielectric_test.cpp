@@ -68,6 +68,20 @@ TEST(Dielectric, ReflectsTotallyInside) {
   EXPECT_EQ(flux.crossed, 0.0f);
 }
 
+// Air in water: the index of the inside is below that of the outside.
+TEST(Dielectric, MayBeThinnerThanItsSurroundings) {
+  const DielectricModel bubble = glass(0, 0.75f);
+  const Split steep = split(bubble, normalize({0.4f, 0, 1}), Transport::Photons);
+  const float f = fresnelDielectric(1 / std::sqrt(1.16f), 0.75f);
+  EXPECT_GT(f, 0.015f);
+  EXPECT_NEAR(steep.reflected, f, 0.01f);
+  EXPECT_NEAR(steep.crossed, 1.0f - f, 0.01f);
+  const Split grazing = split(bubble, normalize({2, 0, 1}), Transport::Photons);
+  EXPECT_FLOAT_EQ(grazing.reflected, 1.0f);
+  EXPECT_EQ(grazing.crossed, 0.0f);
+  check(materialOf(bubble), "bubble");
+}
+
 // For small alpha, rough glass approaches smooth glass.
 TEST(Dielectric, RoughnessHasTheSmoothLimit) {
   for (const bool inside : {false, true}) {

@@ -68,7 +68,7 @@ void addLobes(const MetallicRoughnessModel& model, const MaterialInputs& inputs,
               Bsdf& out) {
   const Vec3 base = inputs.share(model.baseColour);
   const float metallic = inputs.share(model.metallic), specular = inputs.share(model.specular);
-  const float ior = inputs.raw(model.ior) > 0.0f ? inputs.ior(model.ior) : 0.0f;
+  const float ior = inputs.raw(model.ior) > 0.0f ? inputs.coatIor(model.ior) : 0.0f;
   const float normal = ior > 0.0f ? (ior - 1.0f) / (ior + 1.0f) : 1.0f;
   const Vec3 f0 =
       min(Vec3(1), max(Vec3(), inputs.raw(model.specularColour)) * (normal * normal)) * specular;

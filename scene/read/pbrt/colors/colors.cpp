@@ -50,6 +50,8 @@ Spectrum Colors::spectrum(const Param& p) const {
     if (!s)
       failAt(p.place,
              "'" + p.name + "' must be pairs of rising wavelength (nm) and value, not negative");
+    if (s->nm.size() == 1)
+      notes_.add(p.place, "'" + p.name + "' has one sample, and is 0 at all other wavelengths");
     return *s;
   }
   if (p.strings.size() != 1) failAt(p.place, "'" + p.name + "' must be one spectrum");
@@ -108,12 +110,15 @@ double Colors::ior(const Params& params, const std::string& name, double otherwi
                   "a float or spectrum");
   if (!p) return otherwise;
   double eta;
-  if (p->type == ParamType::Spectrum) {
+  if (p->type == ParamType::Spectrum && p->strings.empty() && p->numbers.size() == 2) {
+    eta = p->numbers[1];
+  } else if (p->type == ParamType::Spectrum) {
     constexpr double kYellow = 587.6;  // nm, Fraunhofer line d
-    eta = spectrum(*p).at(kYellow);
-    if (p->numbers.size() != 2)
-      notes_.add(p->place,
-                 "'" + name + "' varies with wavelength: that at 587.6 nm is taken for all");
+    Spectrum s = spectrum(*p);
+    s.constantBeyond = true;  // an index of 0 would be no glass
+    eta = s.at(kYellow);
+    notes_.add(p->place,
+               "'" + name + "' varies with wavelength: that at 587.6 nm is taken for all");
   } else {
     eta = p->type == ParamType::Rgb ? double{mean(rgbOf(*p))} : params.number(name, otherwise);
   }
@@ -123,6 +128,12 @@ double Colors::ior(const Params& params, const std::string& name, double otherwi
   if (!(eta >= kMin && eta <= kMaxIor))
     failAt(p->place, "'" + name + "' must be a refractive index from 0.01 to 100");
   return eta;
+}
+
+double Colors::coatIor(const Params& params, const std::string& name, double otherwise) const {
+  const double eta = ior(params, name, otherwise);
+  if (eta < 1.0) notes_.add(*params.placeOf(name), "'" + name + "' of a coat below 1 counts as 1");
+  return std::max(1.0, eta);
 }
 
 MetalRgb Colors::metal(const Params& params, const std::string& etaName,

@@ -23,6 +23,8 @@ class Colors {
   Vec3 unbounded(const Param& p) const;
   // A scalar index of refraction; a spectrum is evaluated at 587.6 nm.
   double ior(const Params& params, const std::string& name, double otherwise) const;
+  // The same of a coat, which is at least 1.
+  double coatIor(const Params& params, const std::string& name, double otherwise) const;
   // The index eta + i k. Two spectra are converted together, triples are used as they are. Each is
   // that of copper by default.
   MetalRgb metal(const Params& params, const std::string& eta, const std::string& k) const;

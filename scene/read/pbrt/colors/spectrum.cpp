@@ -35,8 +35,8 @@ Xyz scaled(Xyz xyz, double by) {
 
 double Spectrum::at(double wavelength) const {
   const auto above = std::upper_bound(nm.begin(), nm.end(), wavelength);
-  if (above == nm.begin()) return value.front();
-  if (above == nm.end()) return value.back();
+  if (above == nm.begin()) return constantBeyond ? value.front() : 0.0;
+  if (above == nm.end()) return constantBeyond || wavelength == nm.back() ? value.back() : 0.0;
   const auto i = static_cast<size_t>(above - nm.begin());
   const double t = (wavelength - nm[i - 1]) / (nm[i] - nm[i - 1]);
   return (1.0 - t) * value[i - 1] + t * value[i];
@@ -45,6 +45,7 @@ double Spectrum::at(double wavelength) const {
 std::optional<Spectrum> spectrumOf(const std::vector<double>& pairs) {
   if (pairs.empty() || pairs.size() % 2 != 0) return std::nullopt;
   Spectrum s;
+  s.constantBeyond = false;
   for (size_t i = 0; i < pairs.size(); i += 2) {
     if (!s.nm.empty() && !(pairs[i] > s.nm.back())) return std::nullopt;
     if (pairs[i + 1] < 0.0) return std::nullopt;

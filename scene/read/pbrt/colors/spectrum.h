@@ -19,10 +19,12 @@ namespace bnvpl::pbrt {
 
 using Xyz = std::array<double, 3>;
 
-// A spectrum that is linear between samples and constant beyond them.
+// A spectrum that is linear between samples. As in pbrt, those of files and parameters are 0 beyond
+// them, and those that have a name are constant.
 struct Spectrum {
   std::vector<double> nm;  // ascending
   std::vector<double> value;
+  bool constantBeyond = true;
   double at(double wavelength) const;
 };
 

@@ -44,9 +44,7 @@ class Parser {
 
   // Attributes.
   void attributeBegin(const Token& at) { states_.push(at.place); }
-  void attributeEnd(const Token& at) { states_.pop(at.place, false, "AttributeBegin"); }
-  void transformBegin(const Token& at) { states_.push(at.place, true); }
-  void transformEnd(const Token& at) { states_.pop(at.place, true, "TransformBegin"); }
+  void attributeEnd(const Token& at) { states_.pop(at.place, "AttributeBegin"); }
   void attribute(const Token& at);
   void reverseOrientation(const Token&) { now().reverseOrientation ^= true; }
   void colorSpace(const Token& at);

@@ -88,7 +88,7 @@ void Parser::objectBegin(const Token& at) {
 
 void Parser::objectEnd(const Token& at) {
   if (!object_) failAt(at.place, "ObjectEnd closes what no ObjectBegin has opened");
-  states_.pop(at.place, false, "ObjectBegin");
+  states_.pop(at.place, "ObjectBegin");
   object_ = nullptr;
 }
 
@@ -106,7 +106,7 @@ void Parser::include(const Token& at) {
 void Parser::import(const Token& at) {
   states_.push(at.place);
   include(at);
-  states_.pop(at.place, false, "Import");
+  states_.pop(at.place, "Import");
 }
 
 }  // namespace bnvpl::pbrt

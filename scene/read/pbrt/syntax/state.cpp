@@ -6,23 +6,15 @@ namespace {
 constexpr size_t kMaxAttributeDepth = 1000;  // nested AttributeBegin and the like
 }
 
-void States::push(const Place& place, bool transformOnly) {
+void States::push(const Place& place) {
   if (stack_.size() == kMaxAttributeDepth)
     failAt(place, "more than 1000 blocks lie within each other; close some");
-  stack_.push_back({now_, transformOnly, place});
+  stack_.push_back({now_, place});
 }
 
-void States::pop(const Place& place, bool transformOnly, const char* what) {
+void States::pop(const Place& place, const char* what) {
   if (stack_.empty()) failAt(place, std::string("closes what no ") + what + " has opened");
-  Saved& saved = stack_.back();
-  if (saved.transformOnly != transformOnly)
-    failAt(place, "closes another block than that of " + saved.place.text());
-  if (transformOnly) {
-    now_.transform = saved.state.transform;
-    now_.transformsStart = saved.state.transformsStart;
-  } else {
-    now_ = std::move(saved.state);
-  }
+  now_ = std::move(stack_.back().state);
   stack_.pop_back();
 }
 

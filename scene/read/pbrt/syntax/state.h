@@ -23,9 +23,9 @@ class States {
   State& now() { return now_; }
   const State& now() const { return now_; }
   // Throws InputError at a depth that only mistakes reach.
-  void push(const Place& place, bool transformOnly = false);
-  // `what` is the directive that opens such a block: "AttributeBegin".
-  void pop(const Place& place, bool transformOnly, const char* what);
+  void push(const Place& place);
+  // `what` opens such a block: "AttributeBegin". Throws InputError where none is open.
+  void pop(const Place& place, const char* what);
   void transformBy(const Place& place, const Affine& by);
   void setTransform(const Place& place, const Affine& to);
   size_t depth() const { return stack_.size(); }
@@ -36,7 +36,6 @@ class States {
  private:
   struct Saved {
     State state;
-    bool transformOnly;
     Place place;
   };
   State now_;

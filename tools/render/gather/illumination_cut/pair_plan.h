@@ -15,7 +15,7 @@ struct PairOptions {
 // A cluster of VPLs for all receivers of a node.
 struct LightPair {
   uint32_t light;
-  bool seen;  // every receiver sees the representative; else each traces a ray
+  bool seen;  // all receivers that were asked see the representative; else each traces a ray
 };
 
 struct PairPlan {

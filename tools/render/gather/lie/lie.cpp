@@ -73,7 +73,8 @@ Gather make(const GatherInputs& in, const Values& options) {
 extern const GatherMethod method;
 const GatherMethod method{
     .name = "lie",
-    .summary = "all VPLs; cells of space know which are visible or hidden, without rays",
+    .summary =
+        "local illumination environments: cells of space know which VPLs are visible or hidden",
     .options = kOptions,
     .make = make,
     .counters = kCounters};

@@ -5,7 +5,7 @@ namespace {
 
 const Given kSlices{{"slices", "6"}, {"columns", "200"}};
 
-RenderResult shown(const GatherCase& c, const Given& options) {
+RenderResult completed(const GatherCase& c, const Given& options) {
   return renderVpls(
       c.world, c.lit,
       with(with(kPlainRender, {{"gather", "matrix-completion"}, {"only", "indirect"}}),
@@ -44,8 +44,8 @@ TEST(MatrixCompletion, WithAllEntriesItIsLightSlice) {
 TEST(MatrixCompletion, FewEntriesAreSampled) {
   const GatherCase& c = *gatherCases().front();
   const Given samples{{"spp", "16"}};
-  const RenderResult all = shown(c, with(samples, {{"entry-share", "1"}}));
-  const RenderResult few = shown(c, with(samples, {{"entry-share", "0.05"}}));
+  const RenderResult all = completed(c, with(samples, {{"entry-share", "1"}}));
+  const RenderResult few = completed(c, with(samples, {{"entry-share", "0.05"}}));
   EXPECT_EQ(all.stats.own[0], 0.0);
   EXPECT_NEAR(few.stats.shadowRays + few.stats.own[0], all.stats.shadowRays, 1e-6);
   EXPECT_LT(few.stats.shadowRays, 0.6 * all.stats.shadowRays);

@@ -132,10 +132,9 @@ Gather make(const GatherInputs& in, const Values& options) {
 }  // namespace
 
 extern const GatherMethod method;
-const GatherMethod method{
-    .name = "mrcs",
-    .summary = "VPLs clustered once for the film, by sampled rows of their matrix",
-    .options = kOptions,
-    .make = make};
+const GatherMethod method{.name = "mrcs",
+                          .summary = "matrix row-column sampling: VPLs clustered once for the film",
+                          .options = kOptions,
+                          .make = make};
 
 }  // namespace bnvpl::methods::gather::mrcs

@@ -1,6 +1,6 @@
 // A light hierarchy for scenes with many lights (Paquette, Poulin & Drettakis 1998): nodes of an
 // octree stand for their VPLs where the light of these cannot differ much over the node's box. As
-// published, visibility is ignored.
+// published, with --shadows none, visibility is ignored.
 #include <algorithm>
 #include <array>
 #include <memory>

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "scene/scene_builder.h"
+#include "tests/render/lit_rooms.h"
 #include "tests/support/pipeline.h"
 #include "tests/support/z_test.h"
 #include "tools/render/integrator/guided/guide.h"
@@ -233,6 +234,27 @@ TEST(Guided, SharedPathsHaveThePathTracersImage) {
         paths(world, with(indirect, {{"spp", "128"}})),
         guided(world, lit, with(indirect, {{"spp", "16"}, {"reuse", "16"}, {"paths", "2"}}))));
   }
+}
+
+// Shading normals alternate between two tilts, so that samples that reuse each other's vertices
+// have different horizons. The guide, which knows none of them, draws directions below each.
+TEST(Guided, HasThePathTracersImageOverNormalMaps) {
+  Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "cornell/scene.toml");
+  scene.film = {16, 16};
+  addTextureCoordinates(scene);
+  UvTransform fine;
+  fine.a = fine.e = 200.0f;
+  const auto tilted = [](float x) {
+    return constantExpression(0.5f * normalize(Vec3{x, 0.0f, 1.0f}) + Vec3(0.5f));
+  };
+  scene.expressions = {tilted(1.0f), tilted(-1.0f), checkerboardExpression(0, 1, fine)};
+  for (Material& m : scene.materials)
+    if (m.name != "Lamp") m.relief.normalMap = 2;
+  const World world(std::move(scene));
+  const VplTable lit = fewLit(world);
+  const Given indirect{{"only", "indirect"}};
+  EXPECT_TRUE(sameExpectation(paths(world, with(indirect, {{"spp", "64"}})),
+                              guided(world, lit, with(indirect, {{"spp", "16"}})), {.seeds = 64}));
 }
 
 // The VPLs have a wrong flux, and the guide takes nearly all directions.

@@ -25,7 +25,8 @@ Connection connect(const Directions& from, const ReusedVertex& vertex) {
   if (!(leaving > 0.0f)) return {};
   const float perArea = share * cosine / squared;
   Connection out{from.pdf(wi) * perArea, bsdf.eval(LobeGroup::Rough, wi) * (perArea * leaving)};
-  out.visible = out.density > 0.0f || !isBlack(out.value);
+  // Directions::sample() rejects directions without value, so that they have no density either.
+  out.visible = !isBlack(out.value);
   return out;
 }
 
