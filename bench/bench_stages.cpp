@@ -86,7 +86,7 @@ std::vector<Ray> cameraRays() {
     SurfacePoint hit;
     BsdfSample next;
     if (world().accel.closestHit(rays.back().origin, rays.back().direction, hit) &&
-        Bsdf(scene, hit).sample(LobeGroup::Rough, Transport::Radiance, rng, next)) {
+        Bsdf(scene, hit).sample(LobeGroup::Rough, TransportMode::Radiance, rng, next)) {
       rays.push_back({world().accel.offsetOrigin(hit.position, next.side), next.wi});
     }
   }

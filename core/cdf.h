@@ -1,4 +1,6 @@
-// Discrete distributions as running sums.
+// Discrete distributions as running sums of weights that are finite and not negative. They have one
+// entry at least; u is in [0, 1). The guide is that of Chen and Asau, On generating random variates
+// from an empirical distribution, 1974.
 #pragma once
 
 #include <algorithm>

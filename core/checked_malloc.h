@@ -12,9 +12,4 @@ inline void* mallocOrThrow(std::size_t bytes) {
   throw std::bad_alloc();
 }
 
-inline void* reallocOrThrow(void* old, std::size_t bytes) {
-  if (void* memory = std::realloc(old, bytes)) return memory;
-  throw std::bad_alloc();
-}
-
 }  // namespace bnvpl

@@ -35,7 +35,9 @@ class ProgressFn {
         tell_(std::move(tell)) {}
 
   explicit operator bool() const { return static_cast<bool>(count_); }
-  void operator()(uint64_t done) const { count_(done); }
+  void operator()(uint64_t done) const {
+    if (count_) count_(done);
+  }
   void tell(const ProgressNote& note) const {
     if (tell_) tell_(note);
   }

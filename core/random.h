@@ -93,7 +93,8 @@ class Rng {
  public:
   constexpr Rng(uint64_t key, uint64_t index) : state_(mix64(key + index * 0x9e3779b97f4a7c15u)) {}
   // Random numbers of one path among many that share their first vertex, such as those of a pixel.
-  // The first kStratifiedPoints points are stratified over all paths with this key.
+  // The first kStratifiedPoints points are stratified over all paths with this key; next() takes
+  // the first number of a point.
   static constexpr Rng stratified(uint64_t key, uint32_t index) {
     Rng rng(key, index);
     rng.key_ = key, rng.index_ = index, rng.pointsLeft_ = kStratifiedPoints;

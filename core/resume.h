@@ -19,7 +19,8 @@
 
 namespace bnvpl {
 
-// A caller's instructions to a stage. By default it does all units from the start.
+// A caller's instructions to a stage. By default it does all units from the start. Of `sink`,
+// `source` and `trial`, all borrowed, at most one is set. `pause` needs `save`.
 struct Resume {
   std::string state;                             // argument of an earlier save(), or empty
   std::function<bool()> pause;                   // called from any thread; true: begin no unit
@@ -27,7 +28,7 @@ struct Resume {
 
   Shard shard = {};                     // units to do
   const ShardSink* sink = nullptr;      // receives the units' results; the stage returns none
-  const ShardSource* source = nullptr;  // results of all units, computed elsewhere
+  const ShardSource* source = nullptr;  // results of all units, computed elsewhere: none is done
   CostTrial* trial = nullptr;           // set by --estimate
   double times = 1.0;                   // number of units that one unit of the trial represents
 };

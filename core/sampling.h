@@ -39,7 +39,7 @@ inline Vec3 sampleCosineHemisphere(float u, float v) {
   return {d.x, d.y, std::sqrt(std::max(0.0f, 1.0f - d.x * d.x - d.y * d.y))};
 }
 // The inverses.
-inline Point2 diskDrawnBy(Vec3 p) {
+inline Point2 invertDiskSample(Vec3 p) {
   const bool wide = std::fabs(p.x) > std::fabs(p.y);
   const float along = wide ? p.x : p.y, across = wide ? p.y : p.x;
   if (along == 0.0f) return {0.5f, 0.5f};
@@ -48,7 +48,7 @@ inline Point2 diskDrawnBy(Vec3 p) {
   const float a = wide ? r : other, b = wide ? other : r;
   return {0.5f * (a + 1.0f), 0.5f * (b + 1.0f)};
 }
-inline Point2 cosineHemisphereDrawnBy(Vec3 d) { return diskDrawnBy(d); }
+inline Point2 invertCosineHemisphereSample(Vec3 d) { return invertDiskSample(d); }
 inline float pdfCosineHemisphere(float cosTheta) { return std::max(0.0f, cosTheta) / kPi; }
 
 // Uniform on the sphere; density 1/(4 pi).
@@ -59,7 +59,7 @@ inline Vec3 sampleSphere(float u, float v) {
 }
 
 // The inverse of sampleSphere().
-inline Point2 sphereDrawnBy(Vec3 d) {
+inline Point2 invertSphereSample(Vec3 d) {
   const float turns = std::atan2(d.y, d.x) / (2.0f * kPi);
   return {0.5f * (1.0f - d.z), turns < 0.0f ? turns + 1.0f : turns};
 }
@@ -93,7 +93,7 @@ inline Barycentric sampleTriangle(float u, float v) {
 }
 
 // The inverse of sampleTriangle().
-inline Point2 triangleDrawnBy(Barycentric b) {
+inline Point2 invertTriangleSample(Barycentric b) {
   const float root = std::min(1.0f, b.u + b.v);
   return {root * root, root > 0.0f ? std::min(1.0f, b.v / root) : 0.0f};
 }

@@ -60,10 +60,10 @@ inline bool isFinite(Vec3 a) {
 constexpr Vec3 reflect(Vec3 w, Vec3 n) { return 2.0f * dot(w, n) * n - w; }
 
 // Two unit vectors that complete the unit vector `n` to a right-handed basis (s, t, n).
-// Duff et al. 2017, "Building an Orthonormal Basis, Revisited".
-struct Basis {
+// Duff et al. 2017, "Building an Orthonormal Frame, Revisited".
+struct Frame {
   Vec3 s, t, n;
-  explicit Basis(Vec3 normal) : n(normal) {
+  explicit Frame(Vec3 normal) : n(normal) {
     const float sign = std::copysign(1.0f, n.z);
     const float a = -1.0f / (sign + n.z);
     const float b = n.x * n.y * a;

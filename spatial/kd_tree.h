@@ -12,8 +12,10 @@
 
 namespace bnvpl {
 
+// Immutable and thread-safe.
 class KdTree {
  public:
+  // Borrows the points.
   explicit KdTree(std::span<const Vec3> points);
   ~KdTree();
   KdTree(const KdTree&) = delete;

@@ -37,6 +37,7 @@ struct Segment {
 
 // Owns the acceleration structure; the Scene must outlive it. Queries are thread-safe.
 // Alpha masks are honoured by every query.
+// Borrows the scene. Immutable and thread-safe.
 class Accelerator {
  public:
   // Throws std::runtime_error when Embree cannot build.
@@ -46,17 +47,18 @@ class Accelerator {
   Accelerator& operator=(const Accelerator&) = delete;
 
   // Finds the nearest surface from `origin`, which the caller has offset off its surface, in the
-  // unit direction. Returns false and sets hit.triangle to kNone if the ray leaves the scene.
+  // unit direction. Returns false and sets hit.triangle to kNone if the ray leaves the scene; the
+  // other members are then unspecified.
   bool closestHit(Vec3 origin, Vec3 direction, SurfacePoint& hit) const;
-  // The same for up to kBatch incoherent rays. Prefetches overlap their cache misses for corners,
-  // normals and texels.
+  // The same for each of `rays`, best kBatch incoherent ones: prefetches overlap their cache misses
+  // for corners, normals and texels. `hits` has as many entries.
   static constexpr size_t kBatch = 16;
   void closestHits(std::span<const Ray> rays, std::span<SurfacePoint> hits) const;
 
   // Whether anything lies strictly between two points, both offset by the caller.
   bool occluded(Vec3 from, Vec3 to) const;
   // The same for many segments, traced eight at a time: several times faster if neighbours in the
-  // list have both ends near each other.
+  // list have both ends near each other. Sets an entry of `hidden` for each, to 0 or 1.
   void occluded(std::span<const Segment> segments, std::span<uint8_t> hidden) const;
   bool occludedToInfinity(Vec3 from, Vec3 direction) const;
 

@@ -38,6 +38,7 @@ class Bsdf {
  public:
   static constexpr size_t kMaxLobes = 8, kMaxFrames = 4;
 
+  // Borrows `point` here and below.
   Bsdf(const Scene& scene, const SurfacePoint& point);
   // A Lambertian surface of the given albedo.
   Bsdf(const SurfacePoint& point, Vec3 albedo);
@@ -76,10 +77,10 @@ class Bsdf {
   // BSDF value of one group times |cos(ns, wi)|, 1/sr, for radiance transport; 0 for delta lobes.
   // Directions below the surface have a value where the group transmits.
   Vec3 eval(LobeGroup group, Vec3 wi) const {
-    return evaluate<Transport::Radiance>(group, wi, Wanted::OnlyValue).value;
+    return evaluate<TransportMode::Radiance>(group, wi, Wanted::OnlyValue).value;
   }
   float pdf(LobeGroup group, Vec3 wi) const {
-    return evaluate<Transport::Radiance>(group, wi, Wanted::OnlyPdf).pdf;
+    return evaluate<TransportMode::Radiance>(group, wi, Wanted::OnlyPdf).pdf;
   }
   // Upper bound of eval(Rough, wi) over directions whose cosine with ns is at most maxCosNs and
   // whose cosine with any axis a is at most maxCosine(a).
@@ -101,9 +102,10 @@ class Bsdf {
   }
 
   // Samples a direction. Returns false if the path is absorbed.
-  bool sample(LobeGroup group, Transport transport, Rng& rng, BsdfSample& out) const;
+  bool sample(LobeGroup group, TransportMode transport, Rng& rng, BsdfSample& out) const;
   // The same with random numbers as arguments: `pick` selects the lobe, `at` the direction.
-  bool sample(LobeGroup group, Transport transport, float pick, Point2 at, BsdfSample& out) const;
+  bool sample(LobeGroup group, TransportMode transport, float pick, Point2 at,
+              BsdfSample& out) const;
 
   // shadingFactor() for the point's own shading normal.
   float photonShadingFactor() const {
@@ -136,16 +138,16 @@ class Bsdf {
   // Mean of the transmittance of a coat over a diffuse lobe.
   static float meanThrough(const CoatAbove& above, float most);
   Vec3 glossyBound(uint32_t frame, float maxCosine, float cosMirror) const;
-  template <Transport transport>
+  template <TransportMode transport>
   Evaluated evaluate(LobeGroup group, Vec3 wi, Wanted wanted) const;
-  Evaluated evaluateDiffuse(Transport transport, Vec3 wi) const;
-  bool sampleDiffuse(Transport transport, Point2 at, BsdfSample& out) const;
+  Evaluated evaluateDiffuse(TransportMode transport, Vec3 wi) const;
+  bool sampleDiffuse(TransportMode transport, Point2 at, BsdfSample& out) const;
   // Transmittance of the coat above the lobe for wo and wi; 1 without a coat.
   float coat(const Summand& s, Vec3 wi) const;
   // Whether the light's direction, wi for radiance and wo for photons, lies on one side of both the
   // surface and the lobe's shading normal. Rough lobes require it of the point's own normal, too,
   // by which VPLs are culled.
-  bool lit(const Summand& s, Transport transport, Vec3 wi) const;
+  bool lit(const Summand& s, TransportMode transport, Vec3 wi) const;
   // Value times cosine of a lobe for photons from wo that a camera at wi sees, both on the same
   // side. Frames are bent for wi, as where the camera path arrives from there.
   Vec3 adjointValue(const Summand& s, Vec3 wi) const;

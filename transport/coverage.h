@@ -86,7 +86,7 @@ class Coverage {
   void forEachSurface(uint32_t i, Point2 square, const Fn& fn) const {
     const float reach = reach_[i], height = kPlaneFactor * reach;
     const Vec3 normal = normal_[i];
-    const Vec3 at = position_[i] + Basis(normal).toWorld(sampleDisk(square.x, square.y) * reach);
+    const Vec3 at = position_[i] + Frame(normal).toWorld(sampleDisk(square.x, square.y) * reach);
     Vec3 from = at + normal * height;
     SurfacePoint hit;
     for (int layer = 0; layer < kMaxLayers && accel_.closestHit(from, -normal, hit); ++layer) {

@@ -36,20 +36,20 @@ uint64_t lampOf(const LightSet& lights, size_t light, Vec3 towards) {
   return uint64_t{light} << 9 | static_cast<uint64_t>(step);
 }
 
-bool SharedWithPhotons::sends(size_t light, Vec3 towards) const {
+bool PhotonMis::sends(size_t light, Vec3 towards) const {
   if (!lights || !(photons * lights->pickProbability(light) > 0.0f)) return false;
   return !lamps || !lights->hittable(light) ||
          std::ranges::binary_search(*lamps, lampOf(*lights, light, towards));
 }
 
-float SharedWithPhotons::ofRays(size_t light, Vec3 towards, float guided) const {
+float PhotonMis::rayWeight(size_t light, Vec3 towards, float guided) const {
   if (!sends(light, towards)) return 1.0f;
   if (!lights->hittable(light)) return 0.0f;
   return powerHeuristic(rays, photons * lights->pickProbability(light) * guided *
                                   lights->photonDensity(light, towards));
 }
 
-bool isHidden(const Accelerator& accel, const SurfacePoint& at, const DirectSample& s) {
+bool isHidden(const Accelerator& accel, const SurfacePoint& at, const LightSample& s) {
   const Vec3 side = dot(at.ng, s.wi) < 0.0f ? -at.ng : at.ng;  // the light may shine through
   const Vec3 from = accel.offsetOrigin(at.position, side);
   return s.infinite ? accel.occludedToInfinity(from, s.wi) : accel.occluded(from, s.target);
@@ -59,10 +59,10 @@ Vec3 emissionHit(const LightSet& lights, const SurfacePoint& hit, const Arrival&
   size_t light = kNone;
   const Vec3 emitted = lights.emitted(hit, light);
   if (isBlack(emitted)) return {};
-  const auto place = [&] { return lights.drawnBy(light, hit); };
-  const float ofRays = arrival.shared.ofRays(light, -hit.wo, arrival.from, place);
+  const auto place = [&] { return lights.invertSample(light, hit); };
+  const float rayWeight = arrival.shared.rayWeight(light, -hit.wo, arrival.from, place);
   const float pdf = lights.pdfEmitted(light, hit, arrival.from);
-  const Vec3 found = emitted * ofRays * hitWeight(lights, light, pdf, arrival, place);
+  const Vec3 found = emitted * rayWeight * hitWeight(lights, light, pdf, arrival, place);
   if (arrival.groups) arrival.groups.add(lights.group(light), found);
   return found;
 }
@@ -70,9 +70,9 @@ Vec3 emissionHit(const LightSet& lights, const SurfacePoint& hit, const Arrival&
 Vec3 emissionAtInfinity(const LightSet& lights, Vec3 direction, const Arrival& arrival) {
   Vec3 sum;
   lights.forEachAtInfinity(direction, [&](size_t light, Vec3 radiance, float pdf) {
-    const auto place = [&] { return lights.drawnBy(light, direction); };
-    const float ofRays = arrival.shared.ofRays(light, direction, arrival.from, place);
-    const Vec3 found = radiance * ofRays * hitWeight(lights, light, pdf, arrival, place);
+    const auto place = [&] { return lights.invertSample(light, direction); };
+    const float rayWeight = arrival.shared.rayWeight(light, direction, arrival.from, place);
+    const Vec3 found = radiance * rayWeight * hitWeight(lights, light, pdf, arrival, place);
     sum += found;
     if (arrival.groups) arrival.groups.add(lights.group(light), found);
   });

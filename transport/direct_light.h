@@ -28,7 +28,7 @@ uint64_t lampOf(const LightSet& lights, size_t light, Vec3 towards);
 // MIS weights, by the power heuristic, of light through specular vertices that photons estimate,
 // too. Densities are rays per area of the receiver and photons per area of the emitter. Their ratio
 // is exact if the specular surfaces between are flat; otherwise the weights still sum to one.
-struct SharedWithPhotons {
+struct PhotonMis {
   const LightSet* lights = nullptr;  // null: there are no photons
   float rays = 0.0f;                 // BSDF rays per area, 1/unit^2
   float photons = 0.0f;              // number of photons from all lights
@@ -36,19 +36,20 @@ struct SharedWithPhotons {
   const std::vector<uint64_t>* lamps = nullptr;
   const EmissionGuide* guide = nullptr;  // density of the photons; null: by power
   // Weight of rays that reach `from` from the direction `towards` a light. place() tells where on
-  // the light: drawnBy().
+  // the light: invertSample().
   template <typename Place>
-  float ofRays(size_t light, Vec3 towards, Vec3 from, const Place& place) const {
+  float rayWeight(size_t light, Vec3 towards, Vec3 from, const Place& place) const {
     if (!sends(light, towards)) return 1.0f;
     if (!lights->hittable(light)) return 0.0f;
-    const float guided = guide && guide->guides()
-                             ? guide->density({static_cast<uint32_t>(light),
-                                               lights->emittedBy(light, place(), towards, from)})
-                             : 1.0f;
-    return ofRays(light, towards, guided);
+    const float guided =
+        guide && guide->guides()
+            ? guide->density({static_cast<uint32_t>(light),
+                              lights->invertEmission(light, place(), towards, from)})
+            : 1.0f;
+    return rayWeight(light, towards, guided);
   }
   // The same with the density of the photons relative to emission by power.
-  float ofRays(size_t light, Vec3 towards, float guided) const;
+  float rayWeight(size_t light, Vec3 towards, float guided) const;
 
  private:
   // Whether photons carry light of the lamp.
@@ -69,13 +70,13 @@ inline LearnedLight learnedBy(const LearnedStrata& strata) {
 struct LightSampling {
   LearnedLight learned = {};
   LightChoice choice = LightChoice::One;
-  SharedWithPhotons photons = {};
+  PhotonMis photons = {};
   GroupSink groups = {};      // receives the light by group
   GroupSink partGroups = {};  // receives it again; of LightWithPart, the part
 };
 
 // Where the random numbers of a vertex's shadow rays come from: independent ones, or the points of
-// a scrambled Sobol sequence for the rays by the learned distribution.
+// a scrambled Sobol sequence, which serve the rays by the learned distribution alone.
 class LightNumbers {
  public:
   explicit LightNumbers(Rng& rng) : rng_(&rng) {}
@@ -161,7 +162,7 @@ struct Arrival {
   Vec3 from;             // origin of the ray
   LightChoice choice = LightChoice::One;  // choice at `from`, unless learned.strata is given
   LearnedLight learned = {};
-  SharedWithPhotons shared = {};  // weights of light through specular vertices
+  PhotonMis shared = {};          // weights of light through specular vertices
   GroupSink groups = {};          // receives the emission by group
 };
 // Emission that a ray hits, with its MIS weight: that of the surface, or, for a ray that leaves the
@@ -174,7 +175,7 @@ Vec3 emissionAtInfinity(const LightSet& lights, Vec3 direction, const Arrival& a
 // none.
 template <typename Reflects>
 bool unoccludedLight(const LightSet& lights, const Reflects& reflected, const LightPlace& place,
-                     DirectSample& out, typename Reflects::Light& light) {
+                     LightSample& out, typename Reflects::Light& light) {
   if (!lights.sampleDirect(place.light, reflected.point().position, place.at.x, place.at.y, out))
     return false;
   light = reflected(out.wi) * out.radianceOverPdf;
@@ -191,7 +192,7 @@ inline void addToGroup(const LightSampling& to, uint32_t group, const LightWithP
 }
 
 // Whether anything lies between a vertex and a point of the lights.
-bool isHidden(const Accelerator& accel, const SurfacePoint& at, const DirectSample& sample);
+bool isHidden(const Accelerator& accel, const SurfacePoint& at, const LightSample& sample);
 
 // Shadow rays that a vertex sends to one light, in the mean.
 float shadowRaysTo(const LightSet& lights, size_t light, LightChoice choice);
@@ -200,14 +201,14 @@ float shadowRaysTo(const LightSet& lights, size_t light, LightChoice choice);
 template <typename Reflects, typename RayPdf>
 typename Reflects::Light shadowRay(const Accelerator& accel, const LightSet& lights,
                                    const Reflects& reflected, const LightPlace& place, float count,
-                                   const RayPdf& rayPdf, const SharedWithPhotons& photons) {
-  DirectSample s;
+                                   const RayPdf& rayPdf, const PhotonMis& photons) {
+  LightSample s;
   typename Reflects::Light light;
   if (!unoccludedLight(lights, reflected, place, s, light)) return {};
   if (isHidden(accel, reflected.point(), s)) return {};
   const float other = s.pdf > 0.0f ? rayPdf(s.wi) : 0.0f;  // s.pdf 0: no ray can hit the light
   const float weight = other > 0.0f ? powerHeuristic(s.pdf * count, other) : 1.0f;
-  return light * (weight * photons.ofRays(place.light, s.wi, reflected.point().position, [&] {
+  return light * (weight * photons.rayWeight(place.light, s.wi, reflected.point().position, [&] {
            return place.at;
          }) / count);
 }

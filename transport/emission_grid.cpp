@@ -69,10 +69,10 @@ float EmissionGrid::density(Barycentric at) const {
   return densityOf(c.row, c.cell);
 }
 
-Point2 EmissionGrid::drawnBy(Barycentric at) const {
-  if (side_ == 1) return triangleDrawnBy(at);
+Point2 EmissionGrid::invertSample(Barycentric at) const {
+  if (side_ == 1) return invertTriangleSample(at);
   const Cell c = cellOf(at);
-  const Point2 within = triangleDrawnBy(c.within);
+  const Point2 within = invertTriangleSample(c.within);
   const std::span<const float> cells = cellsOf(c.row);
   return {(c.cell > 0 ? cells[c.cell - 1] : 0.0f) + within.x * cdfShare(cells, c.cell),
           (c.row > 0 ? rows_[c.row - 1] : 0.0f) + within.y * cdfShare<float>(rows_, c.row)};

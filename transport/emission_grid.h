@@ -24,7 +24,7 @@ class EmissionGrid {
   Drawn sample(float u, float v) const;
   float density(Barycentric at) const;
   // The inverse of sample(): the point of the unit square that it maps to this one.
-  Point2 drawnBy(Barycentric at) const;
+  Point2 invertSample(Barycentric at) const;
 
   // Barycentric coordinates (of the second and third corner) of a cell's corners.
   static std::array<std::array<double, 2>, 3> corners(uint32_t side, uint32_t row, uint32_t cell);

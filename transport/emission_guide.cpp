@@ -90,7 +90,7 @@ class EmissionGuide::Builder {
   unsigned sideToSplit(const Cell& cell, size_t begin, size_t end) const {
     unsigned best = 4;
     double least = INFINITY;
-    for (const unsigned d : guide_.lights_->emissionSides(cell.light)) {
+    for (const unsigned d : guide_.lights_->primaryDimensions(cell.light)) {
       if (!(cell.size[d] > kSmallest)) continue;
       const float middle = cell.lower[d] + 0.5f * cell.size[d];
       double low = 0.0, high = 0.0;
@@ -142,10 +142,7 @@ EmissionGuide::EmissionGuide(const LightSet& lights, std::span<const PilotPhoton
   }
   for (double& c : cdf_) c /= sum;
   cdf_.back() = 1.0;
-  relativeVariance_ = guided / byPower;
-  if (relativeVariance_ < kWorthwhile) return;
-  cdf_.clear();
-  relativeVariance_ = 1.0;
+  if (!(guided / byPower < kWorthwhile)) cdf_.clear();
 }
 
 Emission EmissionGuide::draw(double choice, Rng& rng) const {
@@ -154,7 +151,7 @@ Emission EmissionGuide::draw(double choice, Rng& rng) const {
     float probability = 0.0f;
     e.light = static_cast<uint32_t>(
         lights_->pick(std::min(static_cast<float>(choice), 0x1.fffffep-1f), probability));
-    e.at = lights_->emissionPoint(e.light, rng);
+    e.at = lights_->primarySample(e.light, rng);
     return e;
   }
   const auto chosen = std::upper_bound(cdf_.begin(), cdf_.end() - 1, choice) - cdf_.begin();

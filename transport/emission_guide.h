@@ -22,7 +22,7 @@ namespace bnvpl {
 // A point in the emission of all lights.
 struct Emission {
   uint32_t light = 0;
-  EmissionPoint at{};
+  PrimarySample at{};
 };
 
 // Immutable and thread-safe.
@@ -46,13 +46,11 @@ class EmissionGuide {
   Emission draw(double choice, Rng& rng) const;
   // The density g. It is at least kDefensive.
   float density(const Emission& e) const;
-  // Second moment of a photon's contribution, over that by power; 1 without a guide.
-  double relativeVariance() const { return relativeVariance_; }
 
  private:
   struct Cell {
     uint32_t light;
-    EmissionPoint lower, size;
+    PrimarySample lower, size;
     float density;
   };
   // A node of a light's tree. `dimension` 4: a leaf, whose cell is `child`. Otherwise the halves
@@ -69,7 +67,6 @@ class EmissionGuide {
   std::vector<uint32_t> root_;  // one per light
   std::vector<Cell> cells_;
   std::vector<double> cdf_;  // running sums of the cells' probabilities
-  double relativeVariance_ = 1.0;
 };
 
 // Contribution of one photon, in any unit. `proxy` is a similar contribution that is more often

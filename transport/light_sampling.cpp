@@ -40,7 +40,7 @@ Vec3 LightSet::emissionOn(const Material& m, uint32_t triangle, const Barycentri
                            first * p[1] + b.u * q[1] + b.v * r[1]);
 }
 
-bool LightSet::sampleArea(const Light& light, Vec3 at, float u, float v, DirectSample& out) const {
+bool LightSet::sampleArea(const Light& light, Vec3 at, float u, float v, LightSample& out) const {
   const auto [p, normal, emission, density] = samplePointOn(light, u, v);
   Vec3 n = normal;
   const Vec3 d = p - at;
@@ -80,7 +80,7 @@ Vec3 LightSet::sampleDirection(const Light& light, float u, float v, Vec3& radia
     }
     pdf = pdfNarrowCone(versine(s.angularRadiusRad));
     radiance = sunRadiance(s);
-    return Basis(-s.direction).toWorld(sampleNarrowCone(u, v, versine(s.angularRadiusRad)));
+    return Frame(-s.direction).toWorld(sampleNarrowCone(u, v, versine(s.angularRadiusRad)));
   }
   if (s.image == kNone) {
     pdf = 1.0f / (4.0f * kPi);
@@ -123,7 +123,7 @@ Vec3 LightSet::radianceAtInfinity(size_t index, Vec3 direction, float& pdf) cons
   return image.lookup(u, v) * s.scale;
 }
 
-bool LightSet::sampleDirect(size_t index, Vec3 at, float u, float v, DirectSample& out) const {
+bool LightSet::sampleDirect(size_t index, Vec3 at, float u, float v, LightSample& out) const {
   const Light& light = lights_[index];
   if (light.area) return sampleArea(light, at, u, v, out);
   const LightSpec& s = light.spec;
@@ -158,19 +158,20 @@ LightSet::Hit LightSet::hitOf(const Light& light, const SurfacePoint& hit) const
            std::max(0.0f, dot(cross(e1, d), n) * perArea)}};
 }
 
-Point2 LightSet::drawnBy(size_t index, const SurfacePoint& hit) const {
+Point2 LightSet::invertSample(size_t index, const SurfacePoint& hit) const {
   const Light& light = lights_[index];
   const auto [i, at] = hitOf(light, hit);
-  const Point2 within = light.grids.empty() ? triangleDrawnBy(at) : light.grids[i].drawnBy(at);
+  const Point2 within =
+      light.grids.empty() ? invertTriangleSample(at) : light.grids[i].invertSample(at);
   const float begin = i > 0 ? light.cdf[i - 1] : 0.0f;
   return {begin + within.x * cdfShare<float>(light.cdf, i), within.y};
 }
 
-Point2 LightSet::drawnBy(size_t index, Vec3 direction) const {
+Point2 LightSet::invertSample(size_t index, Vec3 direction) const {
   const Light& light = lights_[index];
   const LightSpec& s = light.spec;
   if (s.type == LightType::Directional) return {0.5f, 0.5f};  // the light is one stratum
-  if (s.image == kNone) return sphereDrawnBy(direction);
+  if (s.image == kNone) return invertSphereSample(direction);
   const EnvironmentImage& image = scene_.environments[s.image];
   float u, v;
   texelOf(s, direction, u, v);
@@ -210,7 +211,7 @@ Vec3 facesAcross(Vec3 extent, Vec3 d) {
 
 }  // namespace
 
-PhotonStart LightSet::emitFromInfinity(const Light& light, const EmissionPoint& at) const {
+PhotonStart LightSet::emitFromInfinity(const Light& light, const PrimarySample& at) const {
   Vec3 radiance;
   float pdf = 0.0f;
   const Vec3 towards = sampleDirection(light, at[0], at[1], radiance, pdf);
@@ -234,13 +235,13 @@ PhotonStart LightSet::emitFromInfinity(const Light& light, const EmissionPoint& 
   return start;
 }
 
-EmissionPoint LightSet::emittedBy(size_t index, Point2 place, Vec3 towards, Vec3 from) const {
+PrimarySample LightSet::invertEmission(size_t index, Point2 place, Vec3 towards, Vec3 from) const {
   const Light& light = lights_[index];
-  EmissionPoint at{place.x, place.y, 0.0f, 0.0f};
+  PrimarySample at{place.x, place.y, 0.0f, 0.0f};
   if (light.area) {
     const Vec3 n = samplePointOn(light, place.x, place.y).normal;
     const bool back = light.twoSided && dot(n, towards) > 0.0f;
-    const Point2 direction = cosineHemisphereDrawnBy(Basis(back ? -n : n).toLocal(-towards));
+    const Point2 direction = invertCosineHemisphereSample(Frame(back ? -n : n).toLocal(-towards));
     at[2] = light.twoSided ? 0.5f * direction.x + (back ? 0.0f : 0.5f) : direction.x;
     at[3] = direction.y;
     return at;
@@ -268,7 +269,7 @@ EmissionPoint LightSet::emittedBy(size_t index, Point2 place, Vec3 towards, Vec3
   return at;
 }
 
-std::span<const uint8_t> LightSet::emissionSides(size_t index) const {
+std::span<const uint8_t> LightSet::primaryDimensions(size_t index) const {
   static constexpr std::array<uint8_t, 4> kAll{0, 1, 2, 3};
   const Light& light = lights_[index];
   if (light.area || light.spec.type == LightType::Environment) return kAll;
@@ -290,16 +291,16 @@ float LightSet::photonDensity(size_t index, Vec3 towards) const {
   return kPi * pdf / (face.x + face.y + face.z);
 }
 
-EmissionPoint LightSet::emissionPoint(size_t index, Rng& rng) const {
+PrimarySample LightSet::primarySample(size_t index, Rng& rng) const {
   const Light& light = lights_[index];
   const bool fromPoint =
       !light.area && (light.spec.type == LightType::Point || light.spec.type == LightType::Spot);
-  EmissionPoint at{};
+  PrimarySample at{};
   for (float& u : std::span(at).first(fromPoint ? 2 : 4)) u = rng.next();
   return at;
 }
 
-PhotonStart LightSet::emit(size_t index, const EmissionPoint& at) const {
+PhotonStart LightSet::emit(size_t index, const PrimarySample& at) const {
   const Light& light = lights_[index];
   const LightSpec& s = light.spec;
   PhotonStart start;
@@ -312,7 +313,7 @@ PhotonStart LightSet::emit(size_t index, const EmissionPoint& at) const {
       if (back) n = -n;
       a = 2.0f * a - (back ? 0.0f : 1.0f);
     }
-    start.direction = Basis(n).toWorld(sampleCosineHemisphere(a, at[3]));
+    start.direction = Frame(n).toWorld(sampleCosineHemisphere(a, at[3]));
     start.origin = accel_.offsetOrigin(p, n);
     start.flux = fluxOf(light, emission) * (1.0f / density);
   } else if (s.type == LightType::Point) {
@@ -320,7 +321,7 @@ PhotonStart LightSet::emit(size_t index, const EmissionPoint& at) const {
   } else if (s.type == LightType::Spot) {
     const Vec3 d = sampleNarrowCone(at[0], at[1], versine(s.coneRad));
     start.origin = s.position;
-    start.direction = Basis(s.direction).toWorld(d);
+    start.direction = Frame(s.direction).toWorld(d);
     const float fromAxis = at[0] * versine(s.coneRad);  // that of the sampled direction
     start.flux = s.emission * (spotFalloff(s, fromAxis) / pdfNarrowCone(versine(s.coneRad)));
   } else {

@@ -1,4 +1,4 @@
-// Directions and extents of the lights that scene.toml defines.
+// Directions and extents of the lights of Scene::lights.
 #pragma once
 
 #include <algorithm>

@@ -8,8 +8,8 @@
 #include "core/cdf.h"
 #include "core/number_text.h"
 #include "core/parallel.h"
-#include "transport/lamp_texture.h"
 #include "transport/light_shape.h"
+#include "transport/textured_emission.h"
 
 namespace bnvpl {
 
@@ -110,12 +110,12 @@ void LightSet::addAreaLights() {
 // Mean emission of a light with a texture or a mask. Makes the grids that importance-sample its
 // points, and turns the areas of its triangles into weights for sampling a triangle.
 Vec3 LightSet::spreadTexture(Light& light, std::vector<double>& areas) const {
-  const LampTexture texture(scene_, light.material, light.triangles);
+  const TexturedEmission texture(scene_, light.material, light.triangles);
   light.grids.resize(areas.size());
   std::vector<std::array<double, 3>> sums(areas.size());
   parallelFor(areas.size(), 16, [&](size_t i) {
     const uint32_t triangle = light.triangles[i], side = texture.side(triangle);
-    std::vector<LampTexture::Mean> cells(size_t{side} * side);
+    std::vector<TexturedEmission::Mean> cells(size_t{side} * side);
     parallelFor(side, 16, [&](size_t row) {
       const auto r = static_cast<uint32_t>(row);
       for (uint32_t c = 0; c < 2 * r + 1; ++c)
@@ -123,7 +123,7 @@ Vec3 LightSet::spreadTexture(Light& light, std::vector<double>& areas) const {
     });
     std::vector<double> weights;
     double weight = 0.0;
-    for (const LampTexture::Mean& cell : cells) {
+    for (const TexturedEmission::Mean& cell : cells) {
       weights.push_back(cell.weight);
       weight += cell.weight;
       for (size_t c = 0; c < 3; ++c) sums[i][c] += cell.emission[c];

@@ -1,5 +1,5 @@
 // One interface to all lights of a scene: emissive triangles, which are one light for each emissive
-// material, and the lights of scene.toml. Power is in W, linear sRGB.
+// material, and those of Scene::lights. Power is in W, linear sRGB.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 namespace bnvpl {
 
 // A light sample: a direction from a point, and the radiance that arrives if nothing occludes it.
-struct DirectSample {
+struct LightSample {
   Vec3 wi;                // unit, towards the light
   Vec3 radianceOverPdf;   // radiance / pdf; with pdf 0, the irradiance on a facing surface
   float pdf = 0.0f;       // density of wi given the light, 1/sr; 0 for lights that no ray can hit
@@ -33,7 +33,7 @@ struct PhotonStart {
 // A point of the unit hypercube from which a light samples a photon: 0 and 1 are the place on an
 // area light, or the direction of another; 2 and 3 are the direction from an area light, or the
 // place on the scene's box of a light at infinity.
-using EmissionPoint = std::array<float, 4>;
+using PrimarySample = std::array<float, 4>;
 
 class LightSet {
  public:
@@ -64,7 +64,7 @@ class LightSet {
 
   // Returns false if no light can arrive at `at` from the sample: it is behind the emitter, outside
   // the cone, or black.
-  bool sampleDirect(size_t light, Vec3 at, float u, float v, DirectSample& out) const;
+  bool sampleDirect(size_t light, Vec3 at, float u, float v, LightSample& out) const;
 
   // Radiance that an emissive surface emits towards wo. `light` is set to its index, or kNone.
   Vec3 emitted(const SurfacePoint& hit, size_t& light) const;
@@ -73,8 +73,8 @@ class LightSet {
 
   // The inverse of sampleDirect(): the point of the unit square that it maps to a hit on an
   // emissive surface, or to the direction towards a light at infinity.
-  Point2 drawnBy(size_t light, const SurfacePoint& hit) const;
-  Point2 drawnBy(size_t light, Vec3 direction) const;
+  Point2 invertSample(size_t light, const SurfacePoint& hit) const;
+  Point2 invertSample(size_t light, Vec3 direction) const;
 
   // How the unit square of a light may be divided into strata.
   struct Extent {
@@ -95,16 +95,16 @@ class LightSet {
     }
   }
 
-  PhotonStart emit(size_t light, const EmissionPoint& at) const;
-  PhotonStart emit(size_t light, Rng& rng) const { return emit(light, emissionPoint(light, rng)); }
+  PhotonStart emit(size_t light, const PrimarySample& at) const;
+  PhotonStart emit(size_t light, Rng& rng) const { return emit(light, primarySample(light, rng)); }
   // A point by power. Dimensions on which the light's photons do not depend are 0.
-  EmissionPoint emissionPoint(size_t light, Rng& rng) const;
-  // The dimensions of EmissionPoint on which a photon depends so that a density over them can be
-  // looked up again by emittedBy().
-  std::span<const uint8_t> emissionSides(size_t light) const;
+  PrimarySample primarySample(size_t light, Rng& rng) const;
+  // The dimensions of PrimarySample on which a photon depends so that a density over them can be
+  // looked up again by invertEmission().
+  std::span<const uint8_t> primaryDimensions(size_t light) const;
   // The inverse of emit() for a photon that reaches `from` straight from the light, in the
-  // direction `towards` the light. `place`: drawnBy() of the hit or the direction.
-  EmissionPoint emittedBy(size_t light, Point2 place, Vec3 towards, Vec3 from) const;
+  // direction `towards` the light. `place`: invertSample() of the hit or the direction.
+  PrimarySample invertEmission(size_t light, Point2 place, Vec3 towards, Vec3 from) const;
   // Density of one photon of emit(), 1/unit^2: per area of the emitter; for a light at infinity, pi
   // times the density per projected area and solid angle, to match the 1/pi of cosine emission. 0
   // if no ray can hit the light. `towards` is the direction towards a light at infinity.
@@ -121,7 +121,7 @@ class LightSet {
 
  private:
   struct Light {
-    LightSpec spec;     // a light of scene.toml, unless `area`
+    LightSpec spec;     // a light of Scene::lights, unless `area`
     bool area = false;  // whether it is an area light of the following triangles
     uint32_t material = kNone;
     std::vector<uint32_t> triangles;
@@ -148,8 +148,8 @@ class LightSet {
   Vec3 radianceAtInfinity(size_t light, Vec3 direction, float& pdf) const;
   float texelPdf(const Light& light, size_t x, uint32_t y) const;
   Vec3 sampleDirection(const Light& light, float u, float v, Vec3& radiance, float& pdf) const;
-  bool sampleArea(const Light& light, Vec3 at, float u, float v, DirectSample& out) const;
-  PhotonStart emitFromInfinity(const Light& light, const EmissionPoint& at) const;
+  bool sampleArea(const Light& light, Vec3 at, float u, float v, LightSample& out) const;
+  PhotonStart emitFromInfinity(const Light& light, const PrimarySample& at) const;
   struct EmitterPoint {
     Vec3 position, normal, emission;
     float density;  // relative to uniform sampling of the light's area

@@ -79,7 +79,8 @@ class PhotonWalk {
     if (!lobes.specular()) specular_ = 0;  // the limit is that between two rough vertices
     BsdfSample sample;
     Ray next;
-    if (last || !sampleNextRay(accel, bsdf, lobes.group, Transport::Photons, rng_, sample, next))
+    if (last ||
+        !sampleNextRay(accel, bsdf, lobes.group, TransportMode::Importance, rng_, sample, next))
       return;
     if (first) beganAtPerfectMirror_ = lobes.specular() && sample.pdf == 0.0f;
     const Vec3 onward = flux_ * sample.weight * (1.0f / (lobes.probability * survive));

@@ -63,7 +63,8 @@ SpecularPath followSpecularPath(const Accelerator& accel, const LightSet& lights
     }
     BsdfSample sample;
     Ray next;
-    if (!sampleNextRay(accel, bsdf, LobeGroup::Specular, Transport::Radiance, rng, sample, next))
+    if (!sampleNextRay(accel, bsdf, LobeGroup::Specular, TransportMode::Radiance, rng, sample,
+                       next))
       return end;
     end.throughput *= sample.weight;
     arrival = {sample.pdf, end.hit.position, LightChoice::One, learnedBy(strata), start.shared};

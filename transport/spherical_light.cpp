@@ -19,7 +19,7 @@ constexpr float kLargeCone = 0.5f;
 
 // The cone of a sphere's directions, or for a receiver inside the hemisphere about its normal.
 struct SphereCone {
-  SphereCone(const SphericalVpl& vpl, const Bsdf& bsdf) {
+  SphereCone(const VirtualSphericalLight& vpl, const Bsdf& bsdf) {
     const float d2 = lengthSquared(vpl.toCentre);
     inside = d2 <= vpl.radius2;
     sin2 = inside ? 1.0f : vpl.radius2 / d2;
@@ -56,7 +56,8 @@ float cosinesOverHemisphere(Vec3 received, Vec3 normal, float radius2) {
 
 }  // namespace
 
-SphericalTransfer sphericalTransfer(const SphericalVpl& vpl, const Bsdf& bsdf, uint64_t key) {
+SphericalLightTransfer sphericalTransfer(const VirtualSphericalLight& vpl, const Bsdf& bsdf,
+                                         uint64_t key) {
   const SphereCone cone(vpl, bsdf);
   const Vec3 ns = bsdf.point().ns, ng = bsdf.point().ng;
   if (bsdf.diffuseOnly()) {
@@ -72,7 +73,7 @@ SphericalTransfer sphericalTransfer(const SphericalVpl& vpl, const Bsdf& bsdf, u
   return {sampledSphericalTransfer(vpl, bsdf, samples, key), true};
 }
 
-Vec3 sampledSphericalTransfer(const SphericalVpl& vpl, const Bsdf& bsdf, unsigned samples,
+Vec3 sampledSphericalTransfer(const VirtualSphericalLight& vpl, const Bsdf& bsdf, unsigned samples,
                               uint64_t key) {
   const SphereCone cone(vpl, bsdf);
   const float solidAngle = cone.solidAngle();
@@ -83,7 +84,7 @@ Vec3 sampledSphericalTransfer(const SphericalVpl& vpl, const Bsdf& bsdf, unsigne
     if (!(emitted > 0.0f)) return Vec3{};
     return bsdf.eval(LobeGroup::Rough, direction) * (emitted / (1.0f + pdf * solidAngle));
   };
-  const Basis basis(cone.axis);
+  const Frame basis(cone.axis);
   const double shiftX = toUnitFloat(random64(key, 0, 0)), shiftY = toUnitFloat(random64(key, 0, 1));
   Vec3 sum;
   for (unsigned k = 0; k < samples; ++k) {
@@ -94,7 +95,7 @@ Vec3 sampledSphericalTransfer(const SphericalVpl& vpl, const Bsdf& bsdf, unsigne
     BsdfSample sample;
     const float pick = toUnitFloat(random64(key, k, 2));
     const Point2 other = r2Sequence(k, shiftY, shiftX);
-    if (bsdf.sample(LobeGroup::Rough, Transport::Radiance, pick, other, sample) &&
+    if (bsdf.sample(LobeGroup::Rough, TransportMode::Radiance, pick, other, sample) &&
         dot(cone.axis, sample.wi) >= cone.cosine)
       sum += weighted(sample.wi, sample.pdf);
   }

@@ -13,25 +13,26 @@
 
 namespace bnvpl {
 
-struct SphericalVpl {
+struct VirtualSphericalLight {
   Vec3 toCentre;  // from the receiver
   Vec3 normal;    // on the lit side; unit, or the mean of unit normals
   float radius2;  // squared radius, > 0
 };
 
 // `value`: BSDF and cosines over the sphere, 1/m2, without intensity.
-struct SphericalTransfer {
+struct SphericalLightTransfer {
   Vec3 value;
   bool sampled;  // a mean of samples, no closed form
 };
 
 // Closed form where the receiver is diffuse and no horizon cuts the cone, else the mean of samples,
 // whose numbers depend on `key`.
-SphericalTransfer sphericalTransfer(const SphericalVpl& vpl, const Bsdf& bsdf, uint64_t key);
+SphericalLightTransfer sphericalTransfer(const VirtualSphericalLight& vpl, const Bsdf& bsdf,
+                                         uint64_t key);
 
 // The value by `samples` directions of the cone and, for a glossy receiver that sees a large
 // sphere, as many of the BSDF, with MIS weights.
-Vec3 sampledSphericalTransfer(const SphericalVpl& vpl, const Bsdf& bsdf, unsigned samples,
+Vec3 sampledSphericalTransfer(const VirtualSphericalLight& vpl, const Bsdf& bsdf, unsigned samples,
                               uint64_t key);
 
 }  // namespace bnvpl

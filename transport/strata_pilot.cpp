@@ -19,7 +19,7 @@ StrataValues estimateStrata(const Accelerator& accel, const LightSet& lights,
       const Bsdf& bsdf = vertices[std::min(which, vertices.size() - 1)];
       const float u = rng.next(), v = rng.next();
       const LightPlace place = strata.place(s, {u, v});
-      DirectSample sample;
+      LightSample sample;
       Vec3 reflected;
       if (!unoccludedLight(lights, Reflected{bsdf}, place, sample, reflected) ||
           isHidden(accel, bsdf.point(), sample))

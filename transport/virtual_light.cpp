@@ -10,7 +10,7 @@
 
 namespace bnvpl {
 
-VplLights makeVplLights(const VplTable& lit, const Accelerator& accel, float clamp, LightKind kind,
+VplLights makeVplLights(const VplTable& lit, const Accelerator& accel, float clamp, VplKind kind,
                         const VplGroups& groups, float oneRadius) {
   VplLights lights;
   lights.groups = groups.groups;
@@ -53,7 +53,8 @@ bool integratedTransfer(const VplLights& vpls, size_t i, const Bsdf& bsdf, Vec3 
   uint64_t key = i;
   for (const float x : {at.position.x, at.position.y, at.position.z})
     key = mix64(key ^ std::bit_cast<uint32_t>(x));
-  const SphericalTransfer found = sphericalTransfer({d, vpls.normal[i], vpls.clamp2[i]}, bsdf, key);
+  const SphericalLightTransfer found =
+      sphericalTransfer({d, vpls.normal[i], vpls.clamp2[i]}, bsdf, key);
   out = {found.value, 0.0f, found.sampled};
   return !isBlack(out.transfer);
 }

@@ -14,7 +14,7 @@ namespace bnvpl {
 // The VPLs that carry flux as point lights: one entry for each place from which a VPL shines, of
 // which it has --emit-points. Gathers and the light tree call an entry a VPL.
 struct VplLights {
-  LightKind kind = {};
+  VplKind kind = {};
   std::vector<Vec3> position;  // offset off its surface, so that shadow rays end before it
   std::vector<Vec3> normal;
   std::vector<Vec3> intensity;  // intensity along the normal, flux / pi, W/sr
@@ -42,7 +42,7 @@ struct VplLights {
 // `clamp` is in units of each VPL's radius (r_max), or of `oneRadius` if that is not 0. `groups`:
 // the table's flux by light group.
 VplLights makeVplLights(const VplTable& lit, const Accelerator& accel, float clamp,
-                        LightKind kind = {}, const VplGroups& groups = {}, float oneRadius = 0.0f);
+                        VplKind kind = {}, const VplGroups& groups = {}, float oneRadius = 0.0f);
 
 // The unoccluded geometry of one VPL and one receiver, without intensity.
 struct VplTransfer {

@@ -1,7 +1,7 @@
 // Kinds of virtual light: the emission and falloff of a VPL, and of a cluster of VPLs. Gathers,
 // light tree and compensation take their values, upper bounds and expectations from here.
 //
-// A kind is a struct of static functions, and an entry of the list LightKinds:
+// A kind is a struct of static functions, and an entry of the list VplKinds:
 //   name       value of the command-line option
 //   boundedDistance2
 //              replaces d^2, so that light falls off with 1/boundedDistance2; it must be at least
@@ -152,16 +152,15 @@ struct KindList {
 };
 
 // Every kind; the first is the default.
-using LightKinds = KindList<PointLight, DiskLight, YukselLight, SphericalLight>;
-inline constexpr std::string_view kLightKinds{LightKinds::choices.data(),
-                                              LightKinds::choices.size()};
+using VplKinds = KindList<PointLight, DiskLight, YukselLight, SphericalLight>;
+inline constexpr std::string_view kLightKinds{VplKinds::choices.data(), VplKinds::choices.size()};
 
-enum class LightKind : uint8_t {};  // an index into LightKinds
+enum class VplKind : uint8_t {};  // an index into VplKinds
 
 // Throws std::logic_error if no kind has that name.
-inline LightKind lightKindNamed(std::string_view name) {
-  for (size_t i = 0; i < LightKinds::names.size(); ++i) {
-    if (LightKinds::names[i] == name) return LightKind(i);
+inline VplKind lightKindNamed(std::string_view name) {
+  for (size_t i = 0; i < VplKinds::names.size(); ++i) {
+    if (VplKinds::names[i] == name) return VplKind(i);
   }
   throw std::logic_error("no kind of light " + std::string(name));
 }
@@ -177,20 +176,20 @@ auto withKindOf(KindList<First, Rest...>, size_t place, const Fn& fn) {
 
 // Calls fn with the struct of a kind.
 template <typename Fn>
-auto withKind(LightKind kind, const Fn& fn) {
-  return withKindOf(LightKinds{}, static_cast<size_t>(kind), fn);
+auto withKind(VplKind kind, const Fn& fn) {
+  return withKindOf(VplKinds{}, static_cast<size_t>(kind), fn);
 }
 
-inline bool isFromCentre(LightKind kind) {
+inline bool isFromCentre(VplKind kind) {
   return withKind(kind, [](auto k) { return k.fromCentre; });
 }
 
 // The kind's falloff, which replaces 1/d^2, in 1/m2.
-inline float falloff(LightKind kind, float distanceSquared, float size2) {
+inline float falloff(VplKind kind, float distanceSquared, float size2) {
   return 1.0f / withKind(kind, [&](auto k) { return k.boundedDistance2(distanceSquared, size2); });
 }
 // Its upper bound for VPLs whose box is at that distance, 1/m2.
-inline float maxFalloff(LightKind kind, float boxDistanceSquared, float size2) {
+inline float maxFalloff(VplKind kind, float boxDistanceSquared, float size2) {
   return 1.0f / withKind(kind, [&](auto k) {
            return minDistance2<decltype(k)>(boxDistanceSquared, size2);
          });

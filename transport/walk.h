@@ -30,7 +30,7 @@ inline Ray rayOn(const Accelerator& accel, const SurfacePoint& vertex, const Bsd
 // Samples a direction from a group of lobes, and sets `next` to the ray in this direction. Returns
 // false if the path is absorbed.
 inline bool sampleNextRay(const Accelerator& accel, const Bsdf& bsdf, LobeGroup group,
-                          Transport transport, Rng& rng, BsdfSample& sample, Ray& next) {
+                          TransportMode transport, Rng& rng, BsdfSample& sample, Ray& next) {
   if (!bsdf.sample(group, transport, rng, sample)) return false;
   next = rayOn(accel, bsdf.point(), sample);
   return true;

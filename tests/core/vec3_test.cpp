@@ -53,9 +53,9 @@ TEST(Vec3, FiniteMeansEveryElement) {
   EXPECT_FALSE(isFinite({INFINITY, 0, 0}));
 }
 
-TEST(Basis, IsOrthonormalAndRightHandedEverywhere) {
+TEST(Frame, IsOrthonormalAndRightHandedEverywhere) {
   for (const Vec3 n : manyDirections()) {
-    const Basis b(n);
+    const Frame b(n);
     EXPECT_NEAR(length(b.s), 1.0f, 1e-5f);
     EXPECT_NEAR(length(b.t), 1.0f, 1e-5f);
     EXPECT_NEAR(dot(b.s, b.t), 0.0f, 1e-5f);

@@ -32,7 +32,7 @@ TEST(Lobes, OfAnyExponent) {
     for (uint64_t i = 0; i < 20000; ++i) {
       Rng rng(3, i);
       BsdfSample s;
-      if (!bsdf.sample(group, Transport::Radiance, rng, s)) continue;
+      if (!bsdf.sample(group, TransportMode::Radiance, rng, s)) continue;
       ASSERT_TRUE(isFinite(s.wi) && isFinite(s.weight) && std::isfinite(s.pdf)) << exponent;
       ASSERT_TRUE(isFinite(bsdf.eval(group, s.wi))) << exponent;
     }
@@ -76,7 +76,7 @@ TEST(Sky, PolesOfAFineImage) {
     Rng rng(5, i);
     const PhotonStart start = lights.emit(0, rng);
     EXPECT_TRUE(isFinite(start.origin) && isFinite(start.direction) && isFinite(start.flux));
-    DirectSample s;
+    LightSample s;
     if (lights.sampleDirect(0, {}, rng.next(), rng.next(), s)) {
       EXPECT_TRUE(isFinite(s.wi) && isFinite(s.radianceOverPdf) && std::isfinite(s.pdf));
     }
@@ -90,7 +90,7 @@ TEST_F(NonFinite, ASunTooSmallForFloatsIsAPoint) {
                                            "direction = [0, 0, -1]\nirradiance = [1, 1, 1]\n"
                                            "angular_diameter_deg = ") +
                                    diameter + "\n"));
-    DirectSample s;
+    LightSample s;
     ASSERT_TRUE(world.lights.sampleDirect(0, {}, 0.3f, 0.6f, s)) << diameter;
     expectClose(s.radianceOverPdf, Vec3(1.0f), 1e-3f, diameter);
   }

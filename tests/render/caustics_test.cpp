@@ -64,7 +64,7 @@ NearFieldRays nearField(const World& world, const VplTable& lit, const char* com
           world.lights,
           std::move(point),
           methodNamed(compensateMethods(), compensate)
-              .make({lit, world.accel, 2.0f, LightKind{}, {}}, {}),
+              .make({lit, world.accel, 2.0f, VplKind{}, {}}, {}),
           1,
           nullptr,
           Only::Indirect};
@@ -199,7 +199,7 @@ TEST(Caustics, EmittersWithTooFewPhotonsAreLeftToRays) {
     const Caustics caustics(world.accel, world.lights, {}, photons, 8.0f, 0, 3, 0, {});
     EXPECT_GT(caustics.stats().lamps, 0u);
     EXPECT_EQ(caustics.stats().sparseLamps == caustics.stats().lamps, left) << photons;
-    return caustics.shared(seen, world.scene.camera.position).ofRays(lamp, {0, 1, 0}, 1.0f);
+    return caustics.shared(seen, world.scene.camera.position).rayWeight(lamp, {0, 1, 0}, 1.0f);
   };
   EXPECT_EQ(share(16, true), 1.0f);
   EXPECT_LT(share(400000, false), 1.0f);

@@ -117,7 +117,7 @@ TEST_P(ClusterBounds, HoldForEveryPairOfClusters) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, ClusterBounds,
-                         testing::Combine(testing::ValuesIn(LightKinds::names), testing::Bool()));
+                         testing::Combine(testing::ValuesIn(VplKinds::names), testing::Bool()));
 
 }  // namespace
 }  // namespace bnvpl::test

@@ -40,7 +40,7 @@ class Combinations : public testing::Test {
 };
 
 TEST_F(Combinations, EveryGatherWithEveryKindOfLightAndCompensation) {
-  for (const std::string_view kind : LightKinds::names) {
+  for (const std::string_view kind : VplKinds::names) {
     for (const CompensateMethod* compensate : compensateMethods()) {
       const Given rest{{"light", std::string(kind)},
                        {"compensate", std::string(compensate->name)},

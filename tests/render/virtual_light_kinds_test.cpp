@@ -15,7 +15,7 @@ template <typename Kind>
 class EachLightKind : public testing::Test {};
 template <typename... Kinds>
 testing::Types<Kinds...> typesOf(KindList<Kinds...>);
-using Kinds = decltype(typesOf(LightKinds{}));
+using Kinds = decltype(typesOf(VplKinds{}));
 TYPED_TEST_SUITE(EachLightKind, Kinds);
 
 TYPED_TEST(EachLightKind, IsFoundByItsName) {
@@ -25,7 +25,7 @@ TYPED_TEST(EachLightKind, IsFoundByItsName) {
 
 TEST(LightKindsOfOptions, AreTheList) {
   EXPECT_EQ(kLightKinds, "point|disk|yuksel|spherical");
-  EXPECT_EQ(lightKindNamed("point"), LightKind{});
+  EXPECT_EQ(lightKindNamed("point"), VplKind{});
   EXPECT_THROW(lightKindNamed("line"), std::logic_error);
 }
 
@@ -134,7 +134,7 @@ TEST(LightKindsOfImages, HaveTheirEnergyRestored) {
   World world("furnace/scene.toml");
   world.scene.film = {24, 24};
   const VplTable lit = litVpls(world, {{"count", "300"}});
-  for (const std::string_view light : LightKinds::names) {
+  for (const std::string_view light : VplKinds::names) {
     if (!isFromCentre(lightKindNamed(light))) continue;  // it removes nothing
     const FilmStats stats =
         renderVpls(world, lit, {{"spp", "32"}, {"light", std::string(light)}}).stats;

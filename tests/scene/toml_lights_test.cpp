@@ -34,7 +34,7 @@ class TomlLights : public SceneFiles {
     double sum = 0.0;
     constexpr int kSamples = 200000;
     for (int i = 0; i < kSamples; ++i) {
-      DirectSample d;
+      LightSample d;
       const float u = rng.next(), v = rng.next();
       if (lights.sampleDirect(0, at, u, v, d))
         sum += double{d.radianceOverPdf.x * std::max(0.0f, dot(d.wi, normal))};

@@ -37,7 +37,6 @@ RENDER = [
     ["tile"],
     ["integrator"],
 ]
-TILE = [["allocation"], ["reuse"], ["direct"], ["caustics"], ["control"]]
 
 MAX_MAIN_LINES = 90
 MAX_FILE_LINES = 350

@@ -58,7 +58,7 @@ size_t SphereCells::cellOf(Vec3 w) {
 }
 
 // The samples are stratified over the lobe choice and the unit square.
-void forEachSample(const Bsdf& bsdf, LobeGroup group, Transport transport, uint32_t count,
+void forEachSample(const Bsdf& bsdf, LobeGroup group, TransportMode transport, uint32_t count,
                    const std::function<void(const BsdfSample&)>& fn) {
   for (uint32_t i = 0; i < count; ++i) {
     const Point2 at = owenSobol(i, 77);
@@ -67,7 +67,7 @@ void forEachSample(const Bsdf& bsdf, LobeGroup group, Transport transport, uint3
     if (bsdf.sample(group, transport, pick, at, s)) fn(s);
   }
 }
-Vec3 meanWeight(const Bsdf& bsdf, LobeGroup group, Transport transport, uint32_t count) {
+Vec3 meanWeight(const Bsdf& bsdf, LobeGroup group, TransportMode transport, uint32_t count) {
   double sum[3] = {};
   forEachSample(bsdf, group, transport, count, [&](const BsdfSample& s) {
     for (size_t c = 0; c < 3; ++c) sum[c] += double{s.weight[c]};
@@ -79,8 +79,8 @@ Vec3 furnace(const Material& m, Vec3 wo, bool insideOut) {
   const Scene scene = sceneOf(m);
   const SurfacePoint p = seenFrom(wo, {0, 0, 1}, insideOut);
   const Bsdf bsdf(scene, p);
-  return meanWeight(bsdf, LobeGroup::Rough, Transport::Photons) +
-         meanWeight(bsdf, LobeGroup::Specular, Transport::Photons);
+  return meanWeight(bsdf, LobeGroup::Rough, TransportMode::Importance) +
+         meanWeight(bsdf, LobeGroup::Specular, TransportMode::Importance);
 }
 
 // Chi-square test of samples against the density, and of the density's integral against the share
@@ -92,7 +92,7 @@ void checkDensity(const Bsdf& bsdf, LobeGroup group, const std::string& name) {
   for (int i = 0; i < kCount; ++i) {
     Rng rng(19, uint64_t(i));
     BsdfSample s;
-    if (!bsdf.sample(group, Transport::Radiance, rng, s)) continue;
+    if (!bsdf.sample(group, TransportMode::Radiance, rng, s)) continue;
     if (s.pdf == 0.0f) {
       ++sharp;
       continue;
@@ -114,14 +114,14 @@ void checkSamples(const Scene& scene, Vec3 wo, Vec3 ns, LobeGroup group, const s
   for (const bool insideOut : {false, true}) {
     const SurfacePoint p = seenFrom(wo, ns, insideOut);
     const Bsdf bsdf(scene, p);
-    forEachSample(bsdf, group, Transport::Radiance, 400, [&](const BsdfSample& s) {
+    forEachSample(bsdf, group, TransportMode::Radiance, 400, [&](const BsdfSample& s) {
       ASSERT_NEAR(length(s.wi), 1.0f, 1e-4f) << name;
       ASSERT_EQ(s.side, s.wi.z > 0.0f ? p.ng : -p.ng) << name;
       if (s.pdf == 0.0f) return;
       ASSERT_NEAR(s.pdf, bsdf.pdf(group, s.wi), 1e-3f * s.pdf + 1e-5f) << name;
       expectClose(s.weight * s.pdf, bsdf.eval(group, s.wi), 2e-3f, name);
     });
-    forEachSample(bsdf, group, Transport::Photons, 400, [&](const BsdfSample& s) {
+    forEachSample(bsdf, group, TransportMode::Importance, 400, [&](const BsdfSample& s) {
       if (s.pdf == 0.0f || std::fabs(s.wi.z) < 0.15f || dot(s.wi, ns) * s.wi.z < 0.15f) return;
       const SurfacePoint there = seenFrom(s.wi, ns, insideOut);
       const Vec3 radiance = Bsdf(scene, there).eval(group, wo);
@@ -139,10 +139,10 @@ void checkBound(const Bsdf& bsdf, const std::string& name) {
   for (int i = 0; i < 400; ++i) {
     const float u = rng.next(), v = rng.next(), s = rng.next(), t = rng.next(), near = rng.next();
     const bool around = i % 2 == 0;  // near lobes, where they are highest
-    const Vec3 middle = Basis(around ? axis : ns)
+    const Vec3 middle = Frame(around ? axis : ns)
                             .toWorld(sampleCone(u, v, around ? 1.0f - 0.3f * near * near : 0.0f));
     const float cosHalf = 1.0f - 0.1f * rng.next(), sinHalf = std::sqrt(1.0f - cosHalf * cosHalf);
-    const Vec3 wi = Basis(middle).toWorld(sampleCone(s, t, cosHalf));
+    const Vec3 wi = Frame(middle).toWorld(sampleCone(s, t, cosHalf));
     const auto most = [&](Vec3 of) {
       const float c = dot(of, middle);
       return c >= cosHalf ? 1.0f : c * cosHalf + std::sqrt(1.0f - c * c) * sinHalf + 1e-6f;
@@ -184,7 +184,7 @@ void check(const Material& m, const std::string& material, float tolerance) {
         // Refraction scales radiance by eta^2, so only what stays on this side is counted.
         double left[3] = {};
         constexpr uint32_t kCount = 1u << 13;
-        forEachSample(b, group, Transport::Radiance, kCount, [&](const BsdfSample& s) {
+        forEachSample(b, group, TransportMode::Radiance, kCount, [&](const BsdfSample& s) {
           for (size_t c = 0; c < 3; ++c) left[c] += s.wi.z > 0.0f ? double{s.weight[c]} : 0.0;
         });
         sum += Vec3(float(left[0]), float(left[1]), float(left[2])) * (1.0f / kCount);

@@ -53,10 +53,10 @@ class SphereCells {
 };
 
 // Calls fn with `count` samples stratified over the lobe choice and the unit square.
-void forEachSample(const Bsdf& bsdf, LobeGroup group, Transport transport, uint32_t count,
+void forEachSample(const Bsdf& bsdf, LobeGroup group, TransportMode transport, uint32_t count,
                    const std::function<void(const BsdfSample&)>& fn);
-Vec3 meanWeight(const Bsdf& bsdf, LobeGroup group, Transport transport = Transport::Radiance,
-                uint32_t count = 1u << 15);
+Vec3 meanWeight(const Bsdf& bsdf, LobeGroup group,
+                TransportMode transport = TransportMode::Radiance, uint32_t count = 1u << 15);
 // Reflected and transmitted flux in a white furnace.
 Vec3 furnace(const Material& m, Vec3 wo, bool insideOut = false);
 

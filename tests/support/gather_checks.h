@@ -57,7 +57,7 @@ inline const std::vector<const GatherCase*>& gatherCases() {
 inline void expectEnergyOfAll(const std::string& gather, double tolerance, uint64_t seeds = 4,
                               const Given& options = {}) {
   for (const GatherCase* c : gatherCases()) {
-    for (const std::string_view name : LightKinds::names) {
+    for (const std::string_view name : VplKinds::names) {
       const std::string light(name);
       // One room shows that spheres are gathered; their light costs most.
       if (!isFromCentre(lightKindNamed(light)) && c != gatherCases().front()) continue;
@@ -79,7 +79,7 @@ inline void expectMeanOfAll(const std::string& gather, double maxError, const Gi
   for (const GatherCase* c : gatherCases()) {
     const bool all = everyKind && c == gatherCases().front();
     for (const std::string_view name :
-         std::span(LightKinds::names).first(all ? LightKinds::names.size() : 1)) {
+         std::span(VplKinds::names).first(all ? VplKinds::names.size() : 1)) {
       const std::string light(name);
       double sum = 0.0, squares = 0.0;
       for (uint64_t seed = 1; seed <= kSeeds; ++seed) {

@@ -57,7 +57,7 @@ Vec3 overHemisphere(const std::function<Vec3(Vec3)>& f) {
   return {float(sum[0] * cell), float(sum[1] * cell), float(sum[2] * cell)};
 }
 
-Vec3 meanWeight(const Bsdf& bsdf, LobeGroup group, Transport transport, int count = 200000) {
+Vec3 meanWeight(const Bsdf& bsdf, LobeGroup group, TransportMode transport, int count = 200000) {
   return meanOver(count, [&](Rng& rng) {
     BsdfSample s;
     return bsdf.sample(group, transport, rng, s) ? s.weight : Vec3{};
@@ -75,8 +75,8 @@ TEST(Bsdf, LambertReflectsItsAlbedoFromEverywhere) {
     const Bsdf bsdf(scene, p);
     expectClose(overHemisphere([&](Vec3 wi) { return bsdf.eval(LobeGroup::Rough, wi); }),
                 {0.8f, 0.5f, 0.1f}, 1e-3f);
-    expectClose(meanWeight(bsdf, LobeGroup::Rough, Transport::Radiance, 1000), {0.8f, 0.5f, 0.1f},
-                1e-4f);
+    expectClose(meanWeight(bsdf, LobeGroup::Rough, TransportMode::Radiance, 1000),
+                {0.8f, 0.5f, 0.1f}, 1e-4f);
     EXPECT_EQ(bsdf.specularProbability(), 0.0f);
     EXPECT_FLOAT_EQ(bsdf.reflectance(), 0.8f);
     EXPECT_EQ(bsdf.eval(LobeGroup::Rough, {0, 0, -1}), Vec3());
@@ -91,7 +91,7 @@ TEST(Bsdf, NeverReflectsMoreThanArrives) {
       const Bsdf bsdf(scene, p);
       Vec3 sum;
       for (const LobeGroup group : kGroups)
-        sum += meanWeight(bsdf, group, Transport::Radiance, 50000);
+        sum += meanWeight(bsdf, group, TransportMode::Radiance, 50000);
       const Material& m = c.material;
       const Vec3 most = min(m.phong().diffuse + m.phong().glossy + m.phong().mirror, Vec3(1));
       for (size_t k = 0; k < 3; ++k)
@@ -113,7 +113,7 @@ TEST(Bsdf, SampledWeightsMeanTheIntegral) {
       for (const LobeGroup group : kGroups) {
         if (isDelta(bsdf, group)) continue;
         const Vec3 integral = overHemisphere([&](Vec3 wi) { return bsdf.eval(group, wi); });
-        expectClose(meanWeight(bsdf, group, Transport::Radiance), integral, 0.01f,
+        expectClose(meanWeight(bsdf, group, TransportMode::Radiance), integral, 0.01f,
                     std::string(c.name) + " from z = " + std::to_string(wo.z));
       }
     }
@@ -132,7 +132,7 @@ TEST(Bsdf, DensityHoldsTheShareOfSamplesThatLeave) {
         const float leaving =
             meanOver(100000, [&](Rng& rng) {
               BsdfSample s;
-              return Vec3(bsdf.sample(group, Transport::Radiance, rng, s) ? 1.0f : 0.0f);
+              return Vec3(bsdf.sample(group, TransportMode::Radiance, rng, s) ? 1.0f : 0.0f);
             }).x;
         const float integral = overHemisphere([&](Vec3 wi) { return Vec3(bsdf.pdf(group, wi)); }).x;
         EXPECT_NEAR(integral, leaving, 0.01f) << c.name << " from z = " << wo.z;
@@ -153,7 +153,7 @@ TEST(Bsdf, SampleNamesItsOwnDensityAndValue) {
         for (uint64_t i = 0; i < 200; ++i) {
           Rng rng(3, i);
           BsdfSample s;
-          if (!bsdf.sample(group, Transport::Radiance, rng, s)) continue;
+          if (!bsdf.sample(group, TransportMode::Radiance, rng, s)) continue;
           ASSERT_NEAR(length(s.wi), 1.0f, 1e-5f);
           ASSERT_NEAR(s.pdf, bsdf.pdf(group, s.wi), 1e-4f * s.pdf + 1e-6f) << c.name;
           expectClose(s.weight * s.pdf, bsdf.eval(group, s.wi), 1e-4f, c.name);
@@ -189,8 +189,8 @@ TEST(Bsdf, PhotonsAndRadianceReflectAlikeOnFlatNormals) {
       const Bsdf bsdf(scene, p);
       EXPECT_FLOAT_EQ(bsdf.photonShadingFactor(), 1.0f);
       for (const LobeGroup group : kGroups) {
-        expectClose(meanWeight(bsdf, group, Transport::Photons),
-                    meanWeight(bsdf, group, Transport::Radiance), 0.01f, c.name);
+        expectClose(meanWeight(bsdf, group, TransportMode::Importance),
+                    meanWeight(bsdf, group, TransportMode::Radiance), 0.01f, c.name);
       }
     }
   }
@@ -205,9 +205,10 @@ TEST(Bsdf, ShadingNormalsScalePhotons) {
   const float factor = dot(p.ns, p.wo) / dot(p.ng, p.wo);
   EXPECT_GT(factor, 1.1f);
   EXPECT_FLOAT_EQ(bsdf.photonShadingFactor(), factor);
-  expectClose(meanWeight(bsdf, LobeGroup::Rough, Transport::Photons), Vec3(0.6f * factor), 1e-3f);
+  expectClose(meanWeight(bsdf, LobeGroup::Rough, TransportMode::Importance), Vec3(0.6f * factor),
+              1e-3f);
   const Vec3 integral = overHemisphere([&](Vec3 wi) { return bsdf.eval(LobeGroup::Rough, wi); });
-  expectClose(meanWeight(bsdf, LobeGroup::Rough, Transport::Radiance), integral, 0.01f);
+  expectClose(meanWeight(bsdf, LobeGroup::Rough, TransportMode::Radiance), integral, 0.01f);
 }
 
 TEST(Bsdf, MirrorReturnsTheOneDirection) {
@@ -219,7 +220,7 @@ TEST(Bsdf, MirrorReturnsTheOneDirection) {
     EXPECT_EQ(bsdf.specularProbability(), 1.0f);
     EXPECT_FALSE(bsdf.hasRough());
     EXPECT_TRUE(bsdf.specularIsDelta());
-    for (const Transport transport : {Transport::Radiance, Transport::Photons}) {
+    for (const TransportMode transport : {TransportMode::Radiance, TransportMode::Importance}) {
       Rng rng(1, 2);
       BsdfSample s;
       ASSERT_TRUE(bsdf.sample(LobeGroup::Specular, transport, rng, s));

@@ -144,7 +144,7 @@ TEST(EmissionGuide, IsOneByPowerWhereNoPhotonIsUseful) {
   EXPECT_EQ(learned.useful.guided, 0.0);
 }
 
-// emittedBy() finds the point from which emit() sampled a photon.
+// invertEmission() finds the point from which emit() sampled a photon.
 TEST(EmissionGuide, EmittedByIsTheInverseOfEmit) {
   Scene scene;
   addSquare(scene, {-200, 0, 200}, {400, 0, 0}, {0, 0, -400}, lambert(Vec3(0.5f)));
@@ -165,14 +165,14 @@ TEST(EmissionGuide, EmittedByIsTheInverseOfEmit) {
   for (size_t light = 0; light < lights.size(); ++light) {
     for (uint64_t i = 0; i < 2000; ++i) {
       Rng rng(3, i);
-      EmissionPoint at;
+      PrimarySample at;
       for (float& u : at) u = rng.next();
       const PhotonStart start = lights.emit(light, at);
       const Vec3 towards = -start.direction, from = start.origin + 0.37f * start.direction;
-      Point2 place = lights.drawnBy(light, towards);
+      Point2 place = lights.invertSample(light, towards);
       if (light < 2) place = {at[0], at[1]};
-      const EmissionPoint found = lights.emittedBy(light, place, towards, from);
-      for (const uint8_t d : lights.emissionSides(light))
+      const PrimarySample found = lights.invertEmission(light, place, towards, from);
+      for (const uint8_t d : lights.primaryDimensions(light))
         ASSERT_NEAR(found[d], at[d], 2e-3f) << "light " << light << ", dimension " << int{d};
     }
   }

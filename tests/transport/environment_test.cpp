@@ -51,7 +51,7 @@ EnvironmentImage onePixel(uint32_t x, uint32_t y) {
   return e;
 }
 Vec3 towards(const Sky& sky) {
-  DirectSample s;
+  LightSample s;
   EXPECT_TRUE(sky.lights->sampleDirect(0, {}, 0.5f, 0.5f, s));
   return s.wi;
 }
@@ -84,7 +84,7 @@ TEST(Environment, SampleIsWhatARayFinds) {
     for (int i = 0; i < kDraws; ++i) {
       Rng rng(5, uint64_t(i));
       const float u = rng.next(), v = rng.next();
-      DirectSample s;
+      LightSample s;
       ASSERT_TRUE(sky.lights->sampleDirect(0, {}, u, v, s));
       EXPECT_NEAR(length(s.wi), 1.0f, 1e-5f);
       float pdf = 0.0f;
@@ -121,7 +121,7 @@ TEST(Environment, DensityIntegratesToOneAndSamplesToTheImage) {
                     float(irradiance[2] * cell)};
   const Vec3 sampled = meanOver(400000, [&](Rng& rng) {
     const float u = rng.next(), v = rng.next();
-    DirectSample s;
+    LightSample s;
     sky.lights->sampleDirect(0, {}, u, v, s);
     return s.radianceOverPdf * std::max(0.0f, dot(s.wi, n));
   });
@@ -142,7 +142,7 @@ TEST(Environment, PhotonsCarryThePowerOfTheImage) {
   });
   const Vec3 direct = meanOver(400000, [&](Rng& rng) {
     const float u = rng.next(), v = rng.next();
-    DirectSample s;
+    LightSample s;
     sky.lights->sampleDirect(0, {}, u, v, s);
     return s.radianceOverPdf * (24.0f * std::max(0.0f, s.wi.y));
   });
@@ -174,7 +174,7 @@ TEST(Environment, BlackSkyIsNoLight) {
   const Sky sky(black);
   EXPECT_EQ(sky.lights->totalPower(), Vec3());
   EXPECT_EQ(sky.look({0, 1, 0}), Vec3());
-  DirectSample s;
+  LightSample s;
   EXPECT_FALSE(sky.lights->sampleDirect(0, {}, 0.5f, 0.5f, s));
 }
 

@@ -27,7 +27,7 @@ struct Split {
   Vec3 weightUp, weightDown;
   Vec3 up, down;  // the two directions
 };
-Split split(const Bsdf& bsdf, Transport transport) {
+Split split(const Bsdf& bsdf, TransportMode transport) {
   Split r;
   constexpr int kDraws = 100000;
   for (int i = 0; i < kDraws; ++i) {
@@ -48,7 +48,7 @@ TEST(Glass, SharesFollowFresnelAndDirectionsSnell) {
   const Scene scene = sceneOf(glass(1.5f));
   for (const double degrees : {0.0, 30.0, 56.31, 75.0, 88.0}) {
     const SurfacePoint p = pointSeenFrom(at(degrees));
-    const Split s = split(Bsdf(scene, p), Transport::Photons);
+    const Split s = split(Bsdf(scene, p), TransportMode::Importance);
     EXPECT_NEAR(s.reflected, fresnelByAngles(degrees, 1.5), 0.006) << degrees;
     EXPECT_LT(length(s.up - Vec3(-p.wo.x, 0, p.wo.z)), 1e-5f);
     EXPECT_NEAR(s.down.x, -p.wo.x / 1.5f, 1e-5f) << degrees;
@@ -63,7 +63,7 @@ TEST(Glass, WeightsOfPhotonsSumToOne) {
   for (const Material& m : {glass(1.33f), tinted}) {
     const Scene scene = sceneOf(m);
     const SurfacePoint p = pointSeenFrom(at(40));
-    const Split s = split(Bsdf(scene, p), Transport::Photons);
+    const Split s = split(Bsdf(scene, p), TransportMode::Importance);
     expectClose(s.weightUp, Vec3(1), 1e-6f);
     expectClose(s.weightDown, m.phong().transmission, 1e-6f);
   }
@@ -74,8 +74,8 @@ TEST(Glass, RadianceIsScaledByEtaSquared) {
   const Scene scene = sceneOf(glass(1.5f));
   const SurfacePoint outside = pointSeenFrom(at(30)),
                      inside = pointSeenFrom(at(10), {0, 0, 1}, {0, 0, 1}, false);
-  const Split in = split(Bsdf(scene, outside), Transport::Radiance),
-              out = split(Bsdf(scene, inside), Transport::Radiance);
+  const Split in = split(Bsdf(scene, outside), TransportMode::Radiance),
+              out = split(Bsdf(scene, inside), TransportMode::Radiance);
   expectClose(in.weightUp, Vec3(1), 1e-6f);
   expectClose(in.weightDown * out.weightDown, Vec3(1), 1e-5f);
   // A camera path enters from air, where radiance is the inside radiance over eta squared.
@@ -88,7 +88,8 @@ TEST(Glass, ReflectsTotallyBeyondTheCriticalAngle) {
   for (const auto& [degrees, total] :
        {std::pair{41.0, false}, std::pair{42.5, true}, std::pair{80.0, true}}) {
     const SurfacePoint p = pointSeenFrom(at(degrees), {0, 0, 1}, {0, 0, 1}, false);
-    EXPECT_EQ(split(Bsdf(scene, p), Transport::Photons).reflected > 0.9999, total) << degrees;
+    EXPECT_EQ(split(Bsdf(scene, p), TransportMode::Importance).reflected > 0.9999, total)
+        << degrees;
   }
 }
 
@@ -101,7 +102,7 @@ TEST(Glass, IsSpecularOnly) {
   EXPECT_EQ(bsdf.reflectance(), 1.0f);
   Rng rng(1, 1);
   BsdfSample s;
-  EXPECT_FALSE(bsdf.sample(LobeGroup::Rough, Transport::Radiance, rng, s));
+  EXPECT_FALSE(bsdf.sample(LobeGroup::Rough, TransportMode::Radiance, rng, s));
   EXPECT_EQ(bsdf.eval(LobeGroup::Specular, {0, 0, 1}), Vec3());
 }
 

@@ -44,17 +44,17 @@ TEST(LightStrata, DrawnByTurnsDrawingAround) {
   for (size_t light = 0; light < lit.lights.size(); ++light) {
     for (uint32_t k = 0; k < 200; ++k) {
       const Point2 p = r2Sequence(k, 0.3, 0.6);
-      DirectSample s;
+      LightSample s;
       if (!lit.lights.sampleDirect(light, at, p.x, p.y, s) || !(s.pdf > 0.0f)) continue;
       Point2 back{};
       if (s.infinite) {
         if (!lit.lights.extent(light).divisible) continue;  // the sun
-        back = lit.lights.drawnBy(light, s.wi);
+        back = lit.lights.invertSample(light, s.wi);
         ++skies;
       } else {
         SurfacePoint hit;
         ASSERT_TRUE(lit.accel.closestHit(at, s.wi, hit));
-        back = lit.lights.drawnBy(light, hit);
+        back = lit.lights.invertSample(light, hit);
         ++areas;
       }
       EXPECT_NEAR(back.x, p.x, 2e-4f) << light;

@@ -11,7 +11,7 @@ Vec3 irradiance(const LightSet& lights, size_t light, Vec3 at, Vec3 n) {
   double sum[3] = {0, 0, 0};
   for (int i = 0; i < kSide; ++i) {
     for (int j = 0; j < kSide; ++j) {
-      DirectSample s;
+      LightSample s;
       if (!lights.sampleDirect(light, at, (float(i) + 0.5f) / kSide, (float(j) + 0.5f) / kSide, s))
         continue;
       EXPECT_NEAR(length(s.wi), 1.0f, 1e-5f);
@@ -189,7 +189,7 @@ TEST(DirectLight, LampSampleIsWhatARayFinds) {
     Rng rng(2, 3);
     for (int i = 0; i < 1000; ++i) {
       const float u = rng.next(), v = rng.next();
-      DirectSample s;
+      LightSample s;
       if (!lit.lights.sampleDirect(0, from, u, v, s)) {
         ASSERT_FALSE(lit.scene.textures.empty());  // a black point in a cell that is not black
         continue;
@@ -203,7 +203,7 @@ TEST(DirectLight, LampSampleIsWhatARayFinds) {
       const float pdf = lit.lights.pdfEmitted(light, hit, from);
       EXPECT_NEAR(pdf, s.pdf, 2e-4f * pdf);
       expectClose(s.radianceOverPdf * s.pdf, radiance, 1e-2f);
-      const Point2 back = lit.lights.drawnBy(light, hit);
+      const Point2 back = lit.lights.invertSample(light, hit);
       EXPECT_NEAR(back.x, u, 1e-3f);
       EXPECT_NEAR(back.y, v, 1e-2f);
     }
@@ -225,7 +225,7 @@ TEST(DirectLight, PointFollowsTheInverseSquare) {
   spec.position = {0, 2, 0};
   spec.emission = {8, 4, 2};
   const Lit lit(withLight(spec));
-  DirectSample s;
+  LightSample s;
   ASSERT_TRUE(lit.lights.sampleDirect(0, {0, 0, 0}, 0.5f, 0.5f, s));
   expectClose(s.radianceOverPdf, {2, 1, 0.5f}, 1e-6f);
   EXPECT_EQ(s.wi, Vec3(0, 1, 0));
@@ -246,7 +246,7 @@ TEST(DirectLight, SpotFadesAcrossItsRim) {
   const Lit lit(withLight(spec));
   float before = 2.0f;
   for (const float degrees : {0.0f, 10.0f, 24.0f, 28.0f, 32.5f, 37.0f, 39.5f, 41.0f, 70.0f}) {
-    DirectSample s;
+    LightSample s;
     const Vec3 at{4 * std::tan(degrees * kPi / 180), 0, 0};
     const bool lights = lit.lights.sampleDirect(0, at, 0.5f, 0.5f, s);
     EXPECT_EQ(lights, degrees < 40) << degrees;
@@ -263,7 +263,7 @@ TEST(DirectLight, SpotFadesAcrossItsRim) {
     }
     before = share;
   }
-  DirectSample s;
+  LightSample s;
   EXPECT_FALSE(lit.lights.sampleDirect(0, {0, 8, 0}, 0.5f, 0.5f, s));  // behind the spot
 }
 
@@ -276,12 +276,12 @@ TEST(DirectLight, NarrowSpotsFadeAcrossTheirRim) {
   spec.coneRad = spec.falloffRad = 2e-4f;
   spec.direction = normalize({0.3f, -1, 0.1f});
   const Lit lit(withLight(spec));
-  const Basis across(spec.direction);
+  const Frame across(spec.direction);
   const float far = 4.0f / -spec.direction.y;
   for (int k = 0; k < 20; ++k) {
     const float angle = 1e-5f * float(k), t = 1.0f - angle / spec.coneRad;
     const Vec3 at = spec.position + (spec.direction + across.s * angle) * far;
-    DirectSample s;
+    LightSample s;
     const bool lights = lit.lights.sampleDirect(0, at, 0.5f, 0.5f, s);
     const float share =
         lights ? s.radianceOverPdf.x * lengthSquared(at - spec.position) / 16.0f : 0.0f;
@@ -299,7 +299,7 @@ TEST(DirectLight, SunGivesTheStatedIrradianceAtAnyWidth) {
     const Lit lit(withLight(spec));
     expectClose(irradiance(lit.lights, 0, {}, -spec.direction), {20, 18, 15}, 5e-4f,
                 std::to_string(diameterDeg) + " degrees");
-    DirectSample s;
+    LightSample s;
     ASSERT_TRUE(lit.lights.sampleDirect(0, {}, 0.3f, 0.9f, s));
     EXPECT_TRUE(s.infinite);
     EXPECT_GE(dot(s.wi, -spec.direction), std::cos(spec.angularRadiusRad) - 1e-6f);
@@ -319,7 +319,7 @@ TEST(DirectLight, SunSampleIsWhatARayFinds) {
     for (int i = 0; i < 1000; ++i) {
       Rng rng(4, uint64_t(i));
       const float u = 0.97f * rng.next(), v = rng.next();  // rounding may move the rim outside
-      DirectSample s;
+      LightSample s;
       ASSERT_TRUE(lit.lights.sampleDirect(0, {}, u, v, s));
       lit.lights.forEachAtInfinity(s.wi, [&](size_t, Vec3 radiance, float pdf) {
         ++seen;
@@ -329,7 +329,7 @@ TEST(DirectLight, SunSampleIsWhatARayFinds) {
     }
     EXPECT_GE(seen, 990) << diameterDeg;
     const float outside = spec.angularRadiusRad * 1.1f;
-    const Basis basis(-spec.direction);
+    const Frame basis(-spec.direction);
     lit.lights.forEachAtInfinity(basis.toWorld({std::sin(outside), 0, std::cos(outside)}),
                                  [&](size_t, Vec3, float) { ADD_FAILURE() << diameterDeg; });
   }

@@ -124,7 +124,7 @@ void expectFloorAgrees(const LightSpec& spec, const std::string& name, float tol
   });
   const Vec3 direct = meanOver(400000, [&](Rng& rng) {
     const float x = rng.next(), z = rng.next(), u = rng.next(), v = rng.next();
-    DirectSample s;
+    LightSample s;
     if (!lights.sampleDirect(0, {4 * x - 2, 0, 6 * z - 3}, u, v, s)) return Vec3{};
     return s.radianceOverPdf * std::max(0.0f, s.wi.y) * 24.0f;
   });

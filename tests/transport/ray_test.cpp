@@ -123,7 +123,7 @@ TEST_F(Rays, LiftedPointsStayOnTheirSide) {
       origin = accel.offsetOrigin(hit.position, hit.ng);
       hidden += accel.occluded(origin, center) ? 1 : 0;
       const float u = rng.next(), v = rng.next();
-      direction = Basis(hit.ng).toWorld(sampleCosineHemisphere(u, v));
+      direction = Frame(hit.ng).toWorld(sampleCosineHemisphere(u, v));
     }
     EXPECT_LE(hidden, edgeHits) << keys;
     EXPECT_LE(escaped, edgeHits) << keys;

@@ -26,12 +26,12 @@ Material glossy() {
 }
 
 // Midpoint rule over the whole sphere of directions, in rings about its axis.
-Vec3 integral(const SphericalVpl& vpl, const Bsdf& bsdf) {
+Vec3 integral(const VirtualSphericalLight& vpl, const Bsdf& bsdf) {
   constexpr int kRows = 200, kColumns = 400;
   const float d2 = lengthSquared(vpl.toCentre);
   const bool inside = d2 <= vpl.radius2;
   const double cosine = inside ? 0.0 : std::sqrt(1.0 - double{vpl.radius2} / double{d2});
-  const Basis basis(inside ? bsdf.point().ns : normalize(vpl.toCentre));
+  const Frame basis(inside ? bsdf.point().ns : normalize(vpl.toCentre));
   double sum[3] = {0, 0, 0};
   for (int i = 0; i < kRows; ++i) {
     const double z = cosine + (1.0 - cosine) * (i + 0.5) / kRows, r = std::sqrt(1.0 - z * z);
@@ -48,8 +48,8 @@ Vec3 integral(const SphericalVpl& vpl, const Bsdf& bsdf) {
 }
 
 // Near and far, tilted both ways, cut by either horizon, and around the receiver.
-std::vector<SphericalVpl> vpls() {
-  std::vector<SphericalVpl> all;
+std::vector<VirtualSphericalLight> vpls() {
+  std::vector<VirtualSphericalLight> all;
   for (const Vec3 at : {Vec3{0.1f, 0.2f, 1.0f}, Vec3{0.5f, -0.3f, 0.6f}, Vec3{0.9f, 0.1f, 0.2f}}) {
     for (const Vec3 normal : {Vec3{0, 0, -1}, Vec3{-0.8f, 0.1f, -0.3f}, Vec3{-0.3f, 0.9f, 0.2f}}) {
       for (const float radius : {0.05f, 0.4f, 0.7f, 2.0f})
@@ -61,7 +61,7 @@ std::vector<SphericalVpl> vpls() {
 
 TEST(SphericalLight, OfDiffuseSurfacesIsTheIntegral) {
   const Receiver floor(lambert({0.8f, 0.5f, 0.1f}));
-  for (const SphericalVpl& vpl : vpls()) {
+  for (const VirtualSphericalLight& vpl : vpls()) {
     const Vec3 expected = integral(vpl, floor.bsdf);
     const float scale = 2e-3f * floor.bsdf.diffuseValue().x / lengthSquared(vpl.toCentre);
     const Vec3 sampled = sampledSphericalTransfer(vpl, floor.bsdf, kMany, 1);
@@ -77,8 +77,8 @@ TEST(SphericalLight, OfDiffuseSurfacesIsTheIntegral) {
 // Without a horizon there is no noise: the closed form is the same for every key.
 TEST(SphericalLight, IsClosedWhereNoHorizonCutsIt) {
   const Receiver floor(lambert(Vec3(0.5f)));
-  const auto differs = [&](const SphericalVpl& vpl) {
-    const SphericalTransfer one = sphericalTransfer(vpl, floor.bsdf, 1);
+  const auto differs = [&](const VirtualSphericalLight& vpl) {
+    const SphericalLightTransfer one = sphericalTransfer(vpl, floor.bsdf, 1);
     EXPECT_EQ(one.sampled, one.value.x != sphericalTransfer(vpl, floor.bsdf, 2).value.x);
     return one.sampled;
   };
@@ -111,7 +111,7 @@ TEST(SphericalLight, FromAfarIsAPoint) {
 TEST(SphericalLight, OfGlossySurfacesIsTheIntegral) {
   for (const Vec3 wo : {Vec3{0, 0, 1}, Vec3{-1, -0.3f, 0.5f}}) {
     const Receiver metal(glossy(), wo);
-    for (const SphericalVpl& vpl : vpls()) {
+    for (const VirtualSphericalLight& vpl : vpls()) {
       const Vec3 expected = integral(vpl, metal.bsdf);
       const Vec3 sampled = sampledSphericalTransfer(vpl, metal.bsdf, kMany, 1);
       EXPECT_NEAR(sampled.x, expected.x, 4e-3f * expected.x + 2e-4f);

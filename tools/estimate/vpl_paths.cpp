@@ -59,11 +59,11 @@ double VplPaths::add(const SurfacePoint& hit, float area, Rng& rng, PathSums& r,
   const Vec3 weight(kPi * area / static_cast<float>(r.points * settings_.paths));
   Vec3 first, later;
   std::vector<Vec3> groups(2 * size_t{groups_});  // the same by group
-  const LeavingGroups sinks =
-      groups_ > 0 ? LeavingGroups{{&groups[0]}, {&groups[groups_]}} : LeavingGroups{};
+  const OutgoingGroups sinks =
+      groups_ > 0 ? OutgoingGroups{{&groups[0]}, {&groups[groups_]}} : OutgoingGroups{};
   const auto addPath = [&](const Bsdf& bsdf) {
-    r.rays += 2 * addLeavingLight(in_.accel, in_.lights, bsdf, weight, length_,
-                                  settings_.spatialLights, rng, first, later, sinks);
+    r.rays += 2 * addOutgoingRadiance(in_.accel, in_.lights, bsdf, weight, length_,
+                                      settings_.spatialLights, rng, first, later, sinks);
   };
   // Exitance is the integral of the cosine times radiance over outgoing directions. Where the
   // albedo is constant, it is that of a diffuse surface of this albedo, as it is for photons. The
@@ -77,7 +77,7 @@ double VplPaths::add(const SurfacePoint& hit, float area, Rng& rng, PathSums& r,
     SurfacePoint viewed = hit;
     for (uint64_t j = 0; j < settings_.paths; ++j) {
       const Point2 at = rng.nextPoint();
-      viewed.wo = Basis(hit.ng).toWorld(sampleCosineHemisphere(at.x, at.y));
+      viewed.wo = Frame(hit.ng).toWorld(sampleCosineHemisphere(at.x, at.y));
       addPath(Bsdf(scene, viewed));
     }
   }

@@ -12,10 +12,14 @@
 #include "tools/estimate/estimate.h"
 #include "tools/estimate/vpl_surface.h"
 #include "transport/coverage.h"
-#include "transport/leaving_light.h"
+#include "transport/outgoing_radiance.h"
 
 namespace bnvpl {
 
+inline constexpr auto kPathBouncesOption = inTopic(
+    Topic::Quality,
+    wholeOption("max-bounces", "32", 1, 1000, "",
+                "bounces off rough surfaces between a light and the view, with that at the VPL"));
 inline constexpr WholeOption kPathsOption =
     countOption("paths", "4", 1u << 20, "", "paths from each point");
 

@@ -13,7 +13,7 @@ namespace bnvpl {
 // The second and third corner, anticlockwise, of a triangle that faces along `normal` and has its
 // right angle at `place`.
 inline std::array<Vec3, 2> facetCorners(Vec3 place, Vec3 normal, float leg) {
-  const Basis basis(normal);
+  const Frame basis(normal);
   return {place + basis.s * leg, place + basis.t * leg};
 }
 

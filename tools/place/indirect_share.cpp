@@ -8,7 +8,7 @@
 #include "formats/vpl/vpl_layout.h"
 #include "tools/common/files/streams.h"
 #include "transport/camera.h"
-#include "transport/leaving_light.h"
+#include "transport/outgoing_radiance.h"
 
 namespace bnvpl {
 
@@ -30,8 +30,8 @@ void addPath(const PlaceInputs& in, Vec3 origin, Vec3 direction, Rng& rng, FilmP
       followSpecularPath(in.accel, in.lights, origin, direction, Arrival{}, rng);
   Vec3 direct = path.emissionFirst + path.emissionLater, indirect;
   if (path.rough) {
-    addLeavingLight(in.accel, in.lights, Bsdf(in.accel.scene(), path.hit), path.throughput,
-                    {kMaxBounces}, nullptr, rng, direct, indirect);
+    addOutgoingRadiance(in.accel, in.lights, Bsdf(in.accel.scene(), path.hit), path.throughput,
+                        {kMaxBounces}, nullptr, rng, direct, indirect);
   }
   if (!isFinite(direct) || !isFinite(indirect)) return;
   point.direct += double{mean(direct)};

@@ -7,7 +7,7 @@
 
 #include "core/errors.h"
 #include "tools/render/integrator/integrator.h"
-#include "tools/render/integrator/light_kind.h"
+#include "tools/render/integrator/vpl_kind.h"
 
 namespace bnvpl {
 
@@ -18,7 +18,7 @@ constexpr std::array kSphereCounters{
     Counter{"sampledpairs", "sampled pairs",
             "VPLs whose light is a mean over directions of their sphere, without a closed form"}};
 
-std::span<const Counter> lightCounters(LightKind kind) {
+std::span<const Counter> lightCounters(VplKind kind) {
   return isFromCentre(kind) ? std::span<const Counter>() : kSphereCounters;
 }
 
@@ -33,14 +33,14 @@ void forEachCounter(const Fn& fn) {
   };
   ofSlot(gatherMethods(), kGatherSlot.name, "gather");
   ofSlot(compensateMethods(), kCompensateSlot.name, "compensation");
-  for (const std::string_view name : LightKinds::names) {
+  for (const std::string_view name : VplKinds::names) {
     for (const Counter& c : lightCounters(lightKindNamed(name)))
       fn(c, "--light " + std::string(name), "light");
   }
 }
 
 std::vector<Counter> countersOf(const GatherMethod& gather, const CompensateMethod& compensate,
-                                LightKind light) {
+                                VplKind light) {
   std::vector<Counter> counters(gather.counters.begin(), gather.counters.end());
   counters.insert(counters.end(), compensate.counters.begin(), compensate.counters.end());
   if (compensate.oneSize) return counters;  // requireTakenLight() refuses such light
@@ -61,18 +61,18 @@ std::string counterList() {
 
 std::vector<Counter> countersOf(const Values& options) {
   const GatherMethod* gather = gatherOf(options);
-  return gather ? countersOf(*gather, *compensationOf(options), lightKindOf(options))
+  return gather ? countersOf(*gather, *compensationOf(options), vplKindOf(options))
                 : std::vector<Counter>{};
 }
 
 std::span<const Layer> counterLayersOf(const Values& options) {
-  using Methods = std::tuple<const GatherMethod*, const CompensateMethod*, LightKind>;
+  using Methods = std::tuple<const GatherMethod*, const CompensateMethod*, VplKind>;
   static const auto all = [] {
     std::map<Methods, std::vector<Layer>> layers;
     for (const GatherMethod* gather : gatherMethods()) {
       for (const CompensateMethod* compensate : compensateMethods()) {
-        for (const std::string_view name : LightKinds::names) {
-          const LightKind light = lightKindNamed(name);
+        for (const std::string_view name : VplKinds::names) {
+          const VplKind light = lightKindNamed(name);
           for (const Counter& c : countersOf(*gather, *compensate, light)) {
             std::vector<Layer>& own = layers[{gather, compensate, light}];
             own.push_back(counterLayer(c, own.size()));
@@ -84,7 +84,7 @@ std::span<const Layer> counterLayersOf(const Values& options) {
   }();
   const GatherMethod* gather = gatherOf(options);
   if (!gather) return {};
-  const auto own = all.find({gather, compensationOf(options), lightKindOf(options)});
+  const auto own = all.find({gather, compensationOf(options), vplKindOf(options)});
   return own == all.end() ? std::span<const Layer>() : std::span<const Layer>(own->second);
 }
 

@@ -12,8 +12,8 @@
 #include "tools/render/film/tiles.h"
 #include "tools/render/gather/gather.h"
 #include "tools/render/image_camera.h"
-#include "tools/render/integrator/light_kind.h"
 #include "tools/render/integrator/tile_options.h"
+#include "tools/render/integrator/vpl_kind.h"
 #include "tools/render/stage_options.h"
 
 namespace bnvpl {

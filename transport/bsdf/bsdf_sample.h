@@ -17,7 +17,7 @@ enum class LobeGroup { Rough, Specular };
 
 // The quantity that a path carries. It decides which normal the cosine refers to, and whether
 // refraction scales the quantity (Veach 1997, chapter 5).
-enum class Transport { Radiance, Photons };
+enum class TransportMode { Radiance, Importance };
 
 struct BsdfSample {
   Vec3 wi;      // unit, away from the surface

@@ -41,8 +41,8 @@ float Bsdf::coat(const Summand& s, Vec3 wi) const {
   return std::min(s.coatOut, s.above.through(std::fabs(dot(frames_[s.above.frame].z, wi))));
 }
 
-inline bool Bsdf::lit(const Summand& s, Transport transport, Vec3 wi) const {
-  const bool photons = transport == Transport::Photons;
+inline bool Bsdf::lit(const Summand& s, TransportMode transport, Vec3 wi) const {
+  const bool photons = transport == TransportMode::Importance;
   const Vec3 from = photons ? point_.wo : wi;
   const float side = photons ? 1.0f : dot(point_.ng, wi);
   const auto on = [&](Vec3 ns) { return side * dot(ns, from) > 0.0f; };
@@ -68,27 +68,28 @@ Vec3 Bsdf::adjointValue(const Summand& s, Vec3 wi) const {
     const LobeFrame coat = s.above.frame == s.frame ? frame : frameOf(frames_[s.above.frame]);
     kept = std::min(s.above.through(coat.wo.z), s.above.through(std::fabs(dot(coat.z, point_.wo))));
   }
-  return std::visit([&](const auto& l) { return l.value(frame.wo, light, Transport::Radiance); },
-                    s.lobe) *
+  return std::visit(
+             [&](const auto& l) { return l.value(frame.wo, light, TransportMode::Radiance); },
+             s.lobe) *
          (kept * photonCosine(frame.z, wi));
 }
 
 // Lambert's law, the rough group of most surfaces, without a loop over lobes. Photons are drawn by
 // the geometric cosine, so that their weight is the albedo times the shading factor.
-Bsdf::Evaluated Bsdf::evaluateDiffuse(Transport transport, Vec3 wi) const {
+Bsdf::Evaluated Bsdf::evaluateDiffuse(TransportMode transport, Vec3 wi) const {
   const float ng = dot(point_.ng, wi), ns = dot(point_.ns, wi);
   if (!(ng > 0.0f)) return {};
-  if (transport == Transport::Photons) {
+  if (transport == TransportMode::Importance) {
     const float cosine = photonShadingFactor() * ng;
     return cosine > 0.0f ? Evaluated{diffuseValue_ * cosine, pdfCosineHemisphere(ng)} : Evaluated{};
   }
   return ns > 0.0f ? Evaluated{diffuseValue_ * ns, pdfCosineHemisphere(ns)} : Evaluated{};
 }
 
-bool Bsdf::sampleDiffuse(Transport transport, Point2 at, BsdfSample& out) const {
-  const bool photons = transport == Transport::Photons;
+bool Bsdf::sampleDiffuse(TransportMode transport, Point2 at, BsdfSample& out) const {
+  const bool photons = transport == TransportMode::Importance;
   const Vec3 axis = photons ? point_.ng : point_.ns;
-  out.wi = Basis(axis).toWorld(sampleCosineHemisphere(at.x, at.y));
+  out.wi = Frame(axis).toWorld(sampleCosineHemisphere(at.x, at.y));
   out.pdf = pdfCosineHemisphere(dot(axis, out.wi));
   out.weight = roughAlbedo_ * (photons ? photonShadingFactor() : 1.0f);
   out.side = point_.ng;
@@ -98,11 +99,11 @@ bool Bsdf::sampleDiffuse(Transport transport, Point2 at, BsdfSample& out) const 
 // Value and density of a group's lobes. Lobes other than Lambert's need wi on one side of both
 // their frame's normal and the surface. Frames are bent for the camera's direction (LobeFrame): wo
 // for radiance; for photons it is wi, see adjointValue().
-template <Transport transport>
+template <TransportMode transport>
 Bsdf::Evaluated Bsdf::evaluate(LobeGroup group, Vec3 wi, Wanted wanted) const {
   if (group == LobeGroup::Rough && diffuseOnly_) return evaluateDiffuse(transport, wi);
   Evaluated sum;
-  constexpr bool photons = transport == Transport::Photons;
+  constexpr bool photons = transport == TransportMode::Importance;
   const float ng = dot(point_.ng, wi);
   if (ng == 0.0f) return sum;
   Vec3 locals[kMaxFrames];
@@ -141,17 +142,17 @@ Bsdf::Evaluated Bsdf::evaluate(LobeGroup group, Vec3 wi, Wanted wanted) const {
   return sum;
 }
 
-template Bsdf::Evaluated Bsdf::evaluate<Transport::Radiance>(LobeGroup, Vec3, Wanted) const;
+template Bsdf::Evaluated Bsdf::evaluate<TransportMode::Radiance>(LobeGroup, Vec3, Wanted) const;
 
-bool Bsdf::sample(LobeGroup group, Transport transport, Rng& rng, BsdfSample& out) const {
+bool Bsdf::sample(LobeGroup group, TransportMode transport, Rng& rng, BsdfSample& out) const {
   const float pick = rng.next();
   return sample(group, transport, pick, rng.nextPoint(), out);
 }
 
-bool Bsdf::sample(LobeGroup group, Transport transport, float pick, Point2 at,
+bool Bsdf::sample(LobeGroup group, TransportMode transport, float pick, Point2 at,
                   BsdfSample& out) const {
   if (group == LobeGroup::Rough && diffuseOnly_) return sampleDiffuse(transport, at, out);
-  const bool photons = transport == Transport::Photons;
+  const bool photons = transport == TransportMode::Importance;
   const Summand* chosen = nullptr;
   float rest = pick;
   for (const Summand& s : lobes()) {
@@ -167,13 +168,13 @@ bool Bsdf::sample(LobeGroup group, Transport transport, float pick, Point2 at,
   const float surface = photons ? cosineShare(*chosen) : 0.0f;
   if (within < surface) {
     drawn.wi = sampleCosineHemisphere(at.x, at.y);
-    out.wi = Basis(point_.ng).toWorld(drawn.wi);
+    out.wi = Frame(point_.ng).toWorld(drawn.wi);
   } else {
     within = std::min((within - surface) / (1.0f - surface), 0x1.fffffep-1f);
     if (!std::visit([&](const auto& l) { return l.sample(frame.wo, within, at, drawn); },
                     chosen->lobe))
       return false;
-    out.wi = isLambert(chosen->lobe) ? Basis(photons ? point_.ng : point_.ns).toWorld(drawn.wi)
+    out.wi = isLambert(chosen->lobe) ? Frame(photons ? point_.ng : point_.ns).toWorld(drawn.wi)
                                      : frame.toWorld(drawn.wi);
   }
   const float ng = dot(point_.ng, out.wi);
@@ -190,8 +191,8 @@ bool Bsdf::sample(LobeGroup group, Transport transport, float pick, Point2 at,
       out.weight *= photonCosine(frame.z, out.wi) / std::max(1e-6f, std::fabs(drawn.wi.z));
     return !isBlack(out.weight);
   }
-  const Evaluated all = photons ? evaluate<Transport::Photons>(group, out.wi, Wanted::Both)
-                                : evaluate<Transport::Radiance>(group, out.wi, Wanted::Both);
+  const Evaluated all = photons ? evaluate<TransportMode::Importance>(group, out.wi, Wanted::Both)
+                                : evaluate<TransportMode::Radiance>(group, out.wi, Wanted::Both);
   if (!(all.pdf > 0.0f)) return false;
   out.pdf = all.pdf;
   out.weight = all.value * (1.0f / all.pdf);

@@ -33,7 +33,7 @@ bool keepsNormal(Vec3 ng, Vec3 ns, Vec3 wo) {
 LobeFrame::LobeFrame(const SurfacePoint& point, Vec3 shadingNormal, float turned)
     : z(bentNormal(point, shadingNormal)), ns(shadingNormal), turns(turned) {
   const Vec3 along = point.tangent - z * dot(z, point.tangent);
-  x = lengthSquared(along) > 1e-8f ? normalize(along) : Basis(z).s;
+  x = lengthSquared(along) > 1e-8f ? normalize(along) : Frame(z).s;
   y = cross(z, x);
   if (turns != 0.0f) {
     const float angle = 2.0f * kPi * turns;

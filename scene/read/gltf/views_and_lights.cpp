@@ -67,7 +67,7 @@ void addGltfCamera(const GltfModel& model, const GltfPlacement& placement, Scene
   camera.forward = unitOr(placement.world.direction({0, 0, -1}), {0, 0, -1});
   const Vec3 up = unitOr(placement.world.direction({0, 1, 0}), {0, 1, 0});
   const Vec3 right = cross(camera.forward, up);
-  camera.right = length(right) > 1e-6f ? normalize(right) : Basis(camera.forward).s;
+  camera.right = length(right) > 1e-6f ? normalize(right) : Frame(camera.forward).s;
   camera.up = cross(camera.right, camera.forward);
   camera.verticalFovRad = radians(from.perspective.yfov);
   builder.addCamera(name, placeOf(model, placement), camera, filmOf(from.perspective.aspectRatio));

@@ -13,16 +13,6 @@ namespace bnvpl {
 
 inline constexpr OptionKey<std::string> kMethodSlot{"method"};  // a stage with one set of methods
 
-// Make is the type of a function that turns inputs and option values into what the slot needs. The
-// function may throw InputError and UsageError.
-template <typename Make>
-struct Method {
-  std::string_view name;     // on the command line and in the record
-  std::string_view summary;  // one line
-  std::span<const Option> options;
-  Make make;
-};
-
 // Inputs that a method needs by its own fields: "scene", "lit".
 template <typename M>
 std::vector<std::string_view> needsOf(const M& method) {

@@ -25,13 +25,9 @@ constexpr auto kIrradianceErrorOption =
                                      "less work is done if pilots predict this mean relative error "
                                      "of the light in view that comes "
                                      "from VPLs; 0: all work is done"));
-constexpr auto kMaxBouncesOption = inTopic(
-    Topic::Quality,
-    wholeOption("max-bounces", "32", 1, 1000, "",
-                "bounces off rough surfaces between a light and the view, with that at the VPL"));
 constexpr auto kOptions =
     optionTable(kPhotonsOption, kEmissionOption, kIrradianceErrorOption, kPathsOption,
-                kRadiusOption, kMaxBouncesOption, kEmitPointsOption);
+                kRadiusOption, kPathBouncesOption, kEmitPointsOption);
 
 // Share of the work that each pilot gets, about.
 constexpr double kPilot = 1.0 / 32.0;
@@ -185,7 +181,7 @@ class Estimator {
   double irradianceError() const {
     return options_[kIrradianceErrorOption] / std::max(in_.vpls.indirectShare, kMinIndirectShare);
   }
-  unsigned maxBounces() const { return static_cast<unsigned>(options_[kMaxBouncesOption]); }
+  unsigned maxBounces() const { return static_cast<unsigned>(options_[kPathBouncesOption]); }
 
   // The parts of a cost trial share one split.
   const Split& splitOfTrial() {

@@ -14,12 +14,8 @@ namespace {
 
 constexpr auto kPointsOption =
     countOption("points", "64", 1u << 20, "", "points on the surface that each VPL stands for");
-constexpr auto kMaxBouncesOption = inTopic(
-    Topic::Quality,
-    wholeOption("max-bounces", "32", 1, 1000, "",
-                "bounces off rough surfaces between a light and the view, with that at the VPL"));
 constexpr auto kOptions =
-    optionTable(kPointsOption, kPathsOption, kRadiusOption, kMaxBouncesOption, kEmitPointsOption);
+    optionTable(kPointsOption, kPathsOption, kRadiusOption, kPathBouncesOption, kEmitPointsOption);
 
 EstimateResult run(const EstimateInputs& in, const Values& options) {
   in.lights.requirePower();
@@ -30,7 +26,7 @@ EstimateResult run(const EstimateInputs& in, const Values& options) {
                  paths = options[kPathsOption], fewPaths = unitsToTry(trial, paths, 8);
   const VplPaths vplPaths(
       in, {streamKey(options[kSeedOption], Stream::VplPaths), fewPaths,
-           static_cast<unsigned>(options[kMaxBouncesOption]), options.real32(kRadiusOption),
+           static_cast<unsigned>(options[kPathBouncesOption]), options.real32(kRadiusOption),
            options[kEmitPointsOption], spatialLights.get()});
   const std::vector<uint64_t> points(in.vpls.size(), fewPoints);
   Resume resume = in.resume;

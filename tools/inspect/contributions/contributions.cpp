@@ -39,7 +39,7 @@ void addPath(const Accelerator& accel, const VplLights& vpls, Ray ray, Rng& rng,
     if (bsdf.hasRough()) addLight(accel, vpls, bsdf, weight, ofRow);
     BsdfSample sample;
     if (bsdf.specularProbability() <= 0.0f ||
-        !sampleNextRay(accel, bsdf, LobeGroup::Specular, Transport::Radiance, rng, sample, ray))
+        !sampleNextRay(accel, bsdf, LobeGroup::Specular, TransportMode::Radiance, rng, sample, ray))
       return;
     weight = weight * sample.weight;
   }

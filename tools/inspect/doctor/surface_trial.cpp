@@ -76,7 +76,7 @@ bool inUse(const Accelerator& accel, SurfacePoint point, Rng& rng) {
   for (int side = 0; side < 2; ++side, point.ng = -point.ng) {
     if (inSight(accel, point)) return true;
     const Vec3 origin = accel.offsetOrigin(point.position, point.ng);
-    const Basis basis(point.ng);
+    const Frame basis(point.ng);
     for (int i = 0; i < kRays; ++i) {
       const float u = rng.next(), v = rng.next();
       SurfacePoint hit;

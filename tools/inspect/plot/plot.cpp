@@ -34,7 +34,8 @@ Vec3 shadeRay(const Accelerator& accel, Vec3 origin, Vec3 direction, Rng& rng) {
     }
     BsdfSample sample;
     Ray next;
-    if (!sampleNextRay(accel, bsdf, LobeGroup::Specular, Transport::Radiance, rng, sample, next))
+    if (!sampleNextRay(accel, bsdf, LobeGroup::Specular, TransportMode::Radiance, rng, sample,
+                       next))
       return {};
     weight = weight * sample.weight;
     origin = next.origin;

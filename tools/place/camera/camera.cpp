@@ -53,7 +53,7 @@ class CameraPath {
     }
     BsdfSample sample;
     if ((lobes.specular() && ++specular_ > kMaxSpecular) ||
-        !sampleNextRay(accel, bsdf, lobes.group, Transport::Radiance, rng_, sample, next_)) {
+        !sampleNextRay(accel, bsdf, lobes.group, TransportMode::Radiance, rng_, sample, next_)) {
       ++chunk.absorbed;
       return false;
     }

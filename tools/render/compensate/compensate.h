@@ -24,7 +24,7 @@ namespace bnvpl {
 struct UncoveredShare {
   float within = 0.0f;           // distance from which it is 0, world units; may be INFINITY
   float clampRadius = INFINITY;  // that of the covering VPL; INFINITY if no VPL covers the point
-  LightKind kind = {};
+  VplKind kind = {};
 
   float at(float distance) const {
     if (!(distance < within)) return 0.0f;
@@ -83,7 +83,7 @@ struct CompensateInputs {
   const VplTable& lit;
   const Accelerator& accel;
   float clamp;  // bound on 1/d^2, in units of each VPL's r_max
-  LightKind light;
+  VplKind light;
   const VplGroups& groups;  // the VPLs' flux by light group; empty: not told apart
 };
 

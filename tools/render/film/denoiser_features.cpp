@@ -32,7 +32,8 @@ DenoiserFeatures denoiserFeatures(const Accelerator& accel, const SurfacePoint& 
     normalLeft *= passed;
     BsdfSample sample;
     Ray next;
-    if (!sampleNextRay(accel, bsdf, LobeGroup::Specular, Transport::Radiance, rng, sample, next))
+    if (!sampleNextRay(accel, bsdf, LobeGroup::Specular, TransportMode::Radiance, rng, sample,
+                       next))
       return out;
     throughput = throughput * atMostOne(sample.weight);
     if (followed == kMaxFollowed) {

@@ -1,7 +1,7 @@
 #include "tools/render/integrator/path_tracer.h"
 
 #include "tools/render/camera_vertex.h"
-#include "transport/leaving_light.h"
+#include "transport/outgoing_radiance.h"
 
 namespace bnvpl {
 
@@ -12,9 +12,10 @@ void PathTracer::render(const TileSamples& tile) const {
 RadianceSample PathTracer::trace(const CameraSample& sample, Rng& rng) const {
   return tracePath(accel_, lights_, sample, only_, indirect_, rng,
                    [&](const Bsdf& bsdf, Vec3 throughput, bool directOnly, RadianceSample& out) {
-                     addLeavingLight(accel_, lights_, bsdf, throughput, {maxBounces_, directOnly},
-                                     nullptr, rng, out.direct, out.indirect,
-                                     {sample.groups.direct(), sample.groups.indirect()});
+                     addOutgoingRadiance(accel_, lights_, bsdf, throughput,
+                                         {maxBounces_, directOnly}, nullptr, rng, out.direct,
+                                         out.indirect,
+                                         {sample.groups.direct(), sample.groups.indirect()});
                    });
 }
 

@@ -21,7 +21,7 @@ struct AxisFrame {
   alignas(16) float x[4] = {}, y[4] = {}, z[4] = {};
   AxisFrame() = default;
   explicit AxisFrame(Vec3 axis) {
-    const Basis b(axis);
+    const Frame b(axis);
     x[0] = b.s.x, x[1] = b.t.x, x[2] = b.n.x;
     y[0] = b.s.y, y[1] = b.t.y, y[2] = b.n.y;
     z[0] = b.s.z, z[1] = b.t.z, z[2] = b.n.z;
@@ -34,7 +34,7 @@ struct LightNode {
   AxisFrame frame;                                 // basis about the axis
   float cosHalfAngle = 1.0f, sinHalfAngle = 0.0f;  // sine of at most a right angle
   Vec3 intensity;                                  // sum over the cluster, W/sr
-  LightKind kind = {};
+  VplKind kind = {};
   float clamp2 = 0.0f;  // smallest in the cluster, so that bounds hold for all of its VPLs
   float reach = 0.0f;   // by which `bounds` exceeds the box of its VPLs' centres (VplLights::box)
   uint32_t representative = 0;

@@ -68,7 +68,7 @@ class VplSampler {
 
   std::vector<Node4> nodes_;  // begins with those of the start cut
   size_t startNodes_ = 0;
-  LightKind kind_ = {};
+  VplKind kind_ = {};
 };
 
 }  // namespace bnvpl

@@ -89,7 +89,7 @@ void TileIndirectRays::sendFrom(size_t sample, unsigned rays, uint64_t key) {
   parts_.rays->send({directions_[points_.indexOf(sample)], path.throughput, learned_,
                      parts_.caustics && path.specularBounces == 0
                          ? parts_.caustics->shared(path.hit, tile_.samples[sample].origin)
-                         : SharedWithPhotons{},
+                         : PhotonMis{},
                      parts_.reuse > 1},
                     rays, sampleIndexOf(tile_, sample) * rays, key, found_[sample]);
 }

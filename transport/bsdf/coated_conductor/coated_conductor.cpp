@@ -26,7 +26,7 @@ Vec3 CoatedMetal::through(Vec3 wo, Vec3 wi, float cosFacet) const {
   return f;
 }
 
-Vec3 CoatedMetal::value(Vec3 wo, Vec3 wi, Transport) const {
+Vec3 CoatedMetal::value(Vec3 wo, Vec3 wi, TransportMode) const {
   if (smooth() || wi.z <= 0.0f) return {};
   const Vec3 h = normalize(wo + wi);
   return through(wo, wi, dot(wo, h)) * metal.ggx.reflected(wo, wi, h);

@@ -14,7 +14,7 @@ struct CoatedMetal {
   LobeGroup group() const { return metal.group(); }
   float coat(float cosine) const { return dielectricAlbedo(cosine, alpha, ior); }
   Vec3 through(Vec3 wo, Vec3 wi, float cosFacet) const;
-  Vec3 value(Vec3 wo, Vec3 wi, Transport transport) const;
+  Vec3 value(Vec3 wo, Vec3 wi, TransportMode transport) const;
   float pdf(Vec3 wo, Vec3 wi) const { return metal.pdf(wo, wi); }
   bool sample(Vec3 wo, float pick, Point2 at, LobeSample& out) const;
   Vec3 albedo(Vec3 wo) const;

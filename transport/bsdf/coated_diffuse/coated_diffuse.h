@@ -16,7 +16,7 @@ struct CoatedBase {
   LobeGroup group() const { return LobeGroup::Rough; }
   void prepareFor(Vec3 wo) { throughAtWo = {wo.z, through(wo.z)}; }
   float through(float cosine) const { return 1.0f - dielectricAlbedo(cosine, alpha, ior); }
-  Vec3 value(Vec3 wo, Vec3 wi, Transport) const {
+  Vec3 value(Vec3 wo, Vec3 wi, TransportMode) const {
     return wi.z > 0.0f ? scale * (throughFrom(wo) * through(wi.z)) : Vec3{};
   }
   float pdf(Vec3, Vec3 wi) const { return pdfCosineHemisphere(wi.z); }

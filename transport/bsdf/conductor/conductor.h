@@ -13,7 +13,7 @@ struct MultipleScattering {
 
   bool smooth() const { return false; }
   LobeGroup group() const { return isRough ? LobeGroup::Rough : LobeGroup::Specular; }
-  Vec3 value(Vec3 wo, Vec3 wi, Transport) const {
+  Vec3 value(Vec3 wo, Vec3 wi, TransportMode) const {
     return wi.z > 0.0f ? scale * (ggxLoss(wo.z, alpha) * ggxLoss(wi.z, alpha)) : Vec3{};
   }
   float pdf(Vec3, Vec3 wi) const { return pdfCosineHemisphere(wi.z); }

@@ -25,7 +25,7 @@ Vec3 facetBetween(Vec3 wo, Vec3 wi, float eta) {
 
 }  // namespace
 
-Vec3 DielectricLobe::value(Vec3 wo, Vec3 wi, Transport transport) const {
+Vec3 DielectricLobe::value(Vec3 wo, Vec3 wi, TransportMode transport) const {
   if (smooth() || wi.z == 0.0f) return {};
   const Vec3 h = facetBetween(wo, wi, eta);
   const float o = dot(wo, h), i = dot(wi, h);

@@ -15,15 +15,15 @@ struct DielectricLobe {
 
   bool smooth() const { return ggx.smooth(); }
   LobeGroup group() const { return LobeGroup::Specular; }
-  Vec3 value(Vec3 wo, Vec3 wi, Transport transport) const;
+  Vec3 value(Vec3 wo, Vec3 wi, TransportMode transport) const;
   float pdf(Vec3 wo, Vec3 wi) const;
   bool sample(Vec3 wo, float pick, Point2 at, LobeSample& out) const;
   Vec3 albedo(Vec3) const { return max(reflection, transmission); }
   Vec3 bound(Vec3, float, float) const { return {}; }
   // Factor by which refraction scales radiance across the surface; 1 for flux (Veach 1997,
   // section 5.2).
-  float radianceScale(Transport transport) const {
-    return transport == Transport::Radiance ? 1.0f / (eta * eta) : 1.0f;
+  float radianceScale(TransportMode transport) const {
+    return transport == TransportMode::Radiance ? 1.0f / (eta * eta) : 1.0f;
   }
 };
 
@@ -34,7 +34,7 @@ struct ThinSheetLobe {
 
   bool smooth() const { return true; }
   LobeGroup group() const { return LobeGroup::Specular; }
-  Vec3 value(Vec3, Vec3, Transport) const { return {}; }
+  Vec3 value(Vec3, Vec3, TransportMode) const { return {}; }
   float pdf(Vec3, Vec3) const { return 0.0f; }
   bool sample(Vec3 wo, float pick, Point2, LobeSample& out) const;
   Vec3 albedo(Vec3) const { return max(reflection, transmission); }

@@ -26,7 +26,7 @@ TEST(Dielectric, KeepsToWhatEveryModelDoes) {
 struct Split {
   float reflected = 0.0f, crossed = 0.0f;
 };
-Split split(const DielectricModel& m, Vec3 wo, Transport transport, bool inside = false) {
+Split split(const DielectricModel& m, Vec3 wo, TransportMode transport, bool inside = false) {
   const Scene scene = sceneOf(materialOf(m));
   const SurfacePoint p = seenFrom(wo, {0, 0, 1}, inside);
   Split out;
@@ -39,18 +39,18 @@ Split split(const DielectricModel& m, Vec3 wo, Transport transport, bool inside 
 TEST(Dielectric, SmoothSplitsByFresnelAndSnell) {
   for (const Vec3 wo : views()) {
     const float f = fresnelDielectric(wo.z, 1.5f);
-    const Split flux = split(glass(0), wo, Transport::Photons);
+    const Split flux = split(glass(0), wo, TransportMode::Importance);
     EXPECT_NEAR(flux.reflected, f, 0.01f);
     EXPECT_NEAR(flux.crossed, 1.0f - f, 0.01f);
-    EXPECT_NEAR(split(glass(0), wo, Transport::Radiance).crossed, (1.0f - f) / 2.25f, 0.01f);
-    EXPECT_NEAR(split(glass(0), wo, Transport::Radiance, true).crossed,
+    EXPECT_NEAR(split(glass(0), wo, TransportMode::Radiance).crossed, (1.0f - f) / 2.25f, 0.01f);
+    EXPECT_NEAR(split(glass(0), wo, TransportMode::Radiance, true).crossed,
                 (1.0f - fresnelDielectric(wo.z, 1 / 1.5f)) * 2.25f, 0.02f);
   }
   const Scene scene = sceneOf(materialOf(glass(0)));
   const SurfacePoint p = seenFrom(normalize({1, 0, 1}));
   BsdfSample s;
   ASSERT_TRUE(
-      Bsdf(scene, p).sample(LobeGroup::Specular, Transport::Radiance, 0.999f, {0.5f, 0.5f}, s));
+      Bsdf(scene, p).sample(LobeGroup::Specular, TransportMode::Radiance, 0.999f, {0.5f, 0.5f}, s));
   EXPECT_NEAR(s.wi.x, -std::sqrt(0.5f) / 1.5f, 1e-5f);
   EXPECT_LT(s.wi.z, 0.0f);
   EXPECT_EQ(s.side, Vec3(0, 0, -1));
@@ -63,7 +63,7 @@ TEST(Dielectric, SmoothSplitsByFresnelAndSnell) {
 }
 
 TEST(Dielectric, ReflectsTotallyInside) {
-  const Split flux = split(glass(0), normalize({2, 0, 1}), Transport::Photons, true);
+  const Split flux = split(glass(0), normalize({2, 0, 1}), TransportMode::Importance, true);
   EXPECT_FLOAT_EQ(flux.reflected, 1.0f);
   EXPECT_EQ(flux.crossed, 0.0f);
 }
@@ -71,12 +71,12 @@ TEST(Dielectric, ReflectsTotallyInside) {
 // Air in water: the index of the inside is below that of the outside.
 TEST(Dielectric, MayBeThinnerThanItsSurroundings) {
   const DielectricModel bubble = glass(0, 0.75f);
-  const Split steep = split(bubble, normalize({0.4f, 0, 1}), Transport::Photons);
+  const Split steep = split(bubble, normalize({0.4f, 0, 1}), TransportMode::Importance);
   const float f = fresnelDielectric(1 / std::sqrt(1.16f), 0.75f);
   EXPECT_GT(f, 0.015f);
   EXPECT_NEAR(steep.reflected, f, 0.01f);
   EXPECT_NEAR(steep.crossed, 1.0f - f, 0.01f);
-  const Split grazing = split(bubble, normalize({2, 0, 1}), Transport::Photons);
+  const Split grazing = split(bubble, normalize({2, 0, 1}), TransportMode::Importance);
   EXPECT_FLOAT_EQ(grazing.reflected, 1.0f);
   EXPECT_EQ(grazing.crossed, 0.0f);
   check(materialOf(bubble), "bubble");
@@ -86,8 +86,8 @@ TEST(Dielectric, MayBeThinnerThanItsSurroundings) {
 TEST(Dielectric, RoughnessHasTheSmoothLimit) {
   for (const bool inside : {false, true}) {
     const Vec3 wo = normalize({0.4f, 0.1f, 1});
-    const Split rough = split(glass(0.01f), wo, Transport::Radiance, inside),
-                smooth = split(glass(0), wo, Transport::Radiance, inside);
+    const Split rough = split(glass(0.01f), wo, TransportMode::Radiance, inside),
+                smooth = split(glass(0), wo, TransportMode::Radiance, inside);
     EXPECT_NEAR(rough.reflected, smooth.reflected, 0.01f);
     EXPECT_NEAR(rough.crossed, smooth.crossed, 0.02f);
   }
@@ -105,15 +105,15 @@ TEST(Dielectric, ThinSheetSumsItsReflections) {
   m.thin = true;
   for (const Vec3 wo : views()) {
     const float f = fresnelDielectric(wo.z, 1.5f);
-    const Split flux = split(m, wo, Transport::Radiance);
+    const Split flux = split(m, wo, TransportMode::Radiance);
     EXPECT_NEAR(flux.reflected, 2 * f / (1 + f), 0.01f);
     EXPECT_NEAR(flux.crossed, 1 - 2 * f / (1 + f), 0.01f);
   }
   const Scene scene = sceneOf(materialOf(m));
   const SurfacePoint p = seenFrom(views()[1]);
   BsdfSample s;
-  ASSERT_TRUE(
-      Bsdf(scene, p).sample(LobeGroup::Specular, Transport::Photons, 0.999f, {0.5f, 0.5f}, s));
+  ASSERT_TRUE(Bsdf(scene, p).sample(LobeGroup::Specular, TransportMode::Importance, 0.999f,
+                                    {0.5f, 0.5f}, s));
   EXPECT_LT(length(s.wi + p.wo), 1e-5f);
 }
 

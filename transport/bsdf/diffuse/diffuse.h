@@ -13,7 +13,9 @@ struct LambertLobe {
   bool smooth() const { return false; }
   LobeGroup group() const { return transmitted ? LobeGroup::Specular : LobeGroup::Rough; }
   bool onSide(Vec3 wi) const { return transmitted ? wi.z < 0.0f : wi.z > 0.0f; }
-  Vec3 value(Vec3, Vec3 wi, Transport) const { return onSide(wi) ? colour * (1.0f / kPi) : Vec3{}; }
+  Vec3 value(Vec3, Vec3 wi, TransportMode) const {
+    return onSide(wi) ? colour * (1.0f / kPi) : Vec3{};
+  }
   float pdf(Vec3, Vec3 wi) const {
     return onSide(wi) ? pdfCosineHemisphere(std::fabs(wi.z)) : 0.0f;
   }

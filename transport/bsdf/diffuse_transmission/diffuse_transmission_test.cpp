@@ -20,7 +20,7 @@ TEST(DiffuseTransmission, SharesOutBetweenTheSides) {
   expectClose(bsdf.eval(LobeGroup::Specular, {0, 0, -1}), Vec3(0.3f, 0.4f, 0.6f) / kPi, 1e-5f);
   EXPECT_EQ(bsdf.eval(LobeGroup::Specular, {0, 0, 1}), Vec3());
   EXPECT_FALSE(bsdf.specularIsDelta());
-  forEachSample(bsdf, LobeGroup::Specular, Transport::Radiance, 100, [](const BsdfSample& s) {
+  forEachSample(bsdf, LobeGroup::Specular, TransportMode::Radiance, 100, [](const BsdfSample& s) {
     EXPECT_LT(s.wi.z, 0.0f);
     expectClose(s.weight, {0.3f, 0.4f, 0.6f}, 1e-5f);
   });

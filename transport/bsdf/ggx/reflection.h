@@ -28,7 +28,7 @@ struct GgxReflection {
 
   bool smooth() const { return ggx.smooth(); }
   LobeGroup group() const { return ggx.rough() ? LobeGroup::Rough : LobeGroup::Specular; }
-  Vec3 value(Vec3 wo, Vec3 wi, Transport) const {
+  Vec3 value(Vec3 wo, Vec3 wi, TransportMode) const {
     if (smooth() || wi.z <= 0.0f) return {};
     const Vec3 h = normalize(wo + wi);
     return fresnel.at(dot(wo, h)) * ggx.reflected(wo, wi, h);

@@ -30,7 +30,7 @@ float LayeredBase::kept(float cosine) const {
   return base > 1.0f - reflected ? (1.0f - reflected) / base : 1.0f;
 }
 
-Vec3 LayeredBase::value(Vec3 wo, Vec3 wi, Transport) const {
+Vec3 LayeredBase::value(Vec3 wo, Vec3 wi, TransportMode) const {
   if (smooth() || (transmitted ? wi.z >= 0.0f : wi.z <= 0.0f)) return {};
   const Vec3 above = transmitted ? below(wi) : wi, h = normalize(wo + above);
   const float share = (1.0f - layer(dot(wo, h))) * std::min(keptFrom(wo), kept(above.z));

@@ -17,7 +17,7 @@ struct LayeredBase {
 
   bool smooth() const { return transmitted && alpha < kSmoothAlpha; }
   LobeGroup group() const { return transmitted ? LobeGroup::Specular : LobeGroup::Rough; }
-  Vec3 value(Vec3 wo, Vec3 wi, Transport) const;
+  Vec3 value(Vec3 wo, Vec3 wi, TransportMode) const;
   float pdf(Vec3 wo, Vec3 wi) const;
   bool sample(Vec3 wo, float pick, Point2 at, LobeSample& out) const;
   Vec3 albedo(Vec3 wo) const;

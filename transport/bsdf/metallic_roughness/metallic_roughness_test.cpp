@@ -108,7 +108,7 @@ TEST(MetallicRoughness, BaseReflectsItsAlbedo) {
           for (int i = 0; i < kSide * kSide; ++i) {
             const Vec3 wi = sampleCosineHemisphere((float(i % kSide) + 0.5f) / kSide,
                                                    (float(i / kSide) + 0.5f) / kSide);
-            sum += double{base.value(wo, wi, Transport::Radiance).x} * double{kPi};
+            sum += double{base.value(wo, wi, TransportMode::Radiance).x} * double{kPi};
           }
           EXPECT_NEAR(base.albedo(wo).x, sum / (kSide * kSide), 0.01)
               << ior << " " << specular << " " << roughness << " from " << wo.z;
@@ -124,7 +124,8 @@ void expectSamePrepared(const Lobe& lobe) {
       Lobe kept = lobe;
       kept.prepareFor(prepared);
       const Vec3 wi = normalize({0.3f, -0.5f, 0.6f});
-      EXPECT_EQ(kept.value(wo, wi, Transport::Radiance), lobe.value(wo, wi, Transport::Radiance));
+      EXPECT_EQ(kept.value(wo, wi, TransportMode::Radiance),
+                lobe.value(wo, wi, TransportMode::Radiance));
       EXPECT_EQ(kept.bound(wo, 0.7f, 1.0f), lobe.bound(wo, 0.7f, 1.0f));
     }
 }
@@ -172,7 +173,7 @@ TEST(MetallicRoughness, ThinWallLetsStraightThrough) {
   const SurfacePoint p = seenFrom(views()[1]);
   BsdfSample s;
   ASSERT_TRUE(
-      Bsdf(scene, p).sample(LobeGroup::Specular, Transport::Radiance, 0.999f, {0.2f, 0.3f}, s));
+      Bsdf(scene, p).sample(LobeGroup::Specular, TransportMode::Radiance, 0.999f, {0.2f, 0.3f}, s));
   EXPECT_LT(length(s.wi + p.wo), 1e-4f);
   EXPECT_FALSE(Bsdf(scene, p).hasRough());
 }
@@ -186,7 +187,7 @@ TEST(MetallicRoughness, CoatReflectsAboutItsOwnNormal) {
   BsdfSample s;
   const auto mirrored = [&] {
     EXPECT_TRUE(
-        Bsdf(scene, p).sample(LobeGroup::Specular, Transport::Radiance, 0.5f, {0.2f, 0.3f}, s));
+        Bsdf(scene, p).sample(LobeGroup::Specular, TransportMode::Radiance, 0.5f, {0.2f, 0.3f}, s));
     return s.wi;
   };
   EXPECT_LT(length(mirrored() - reflect(p.wo, p.ns)), 1e-4f);
@@ -210,10 +211,10 @@ TEST(MetallicRoughness, CoatWithItsOwnNormalKeepsToWhatEveryModelDoes) {
       for (const LobeGroup group : kGroups) {
         checkDensity(bsdf, group, "coat");
         sum += meanWeight(bsdf, group);
-        forEachSample(bsdf, group, Transport::Radiance, 400, [&](const BsdfSample& s) {
+        forEachSample(bsdf, group, TransportMode::Radiance, 400, [&](const BsdfSample& s) {
           expectClose(s.weight * s.pdf, bsdf.eval(group, s.wi), 2e-3f, "coat");
         });
-        forEachSample(bsdf, group, Transport::Photons, 400, [&](const BsdfSample& s) {
+        forEachSample(bsdf, group, TransportMode::Importance, 400, [&](const BsdfSample& s) {
           if (std::fabs(s.wi.z) < 0.15f || dot(s.wi, p.ns) < 0.15f || dot(s.wi, p.coat) < 0.15f)
             return;
           SurfacePoint there = seenFrom(s.wi, p.ns);

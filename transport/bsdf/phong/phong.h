@@ -17,14 +17,14 @@ struct PhongLobe {
   LobeGroup group() const {
     return exponent > kNearSpecularExponent ? LobeGroup::Specular : LobeGroup::Rough;
   }
-  Vec3 value(Vec3 wo, Vec3 wi, Transport) const {
+  Vec3 value(Vec3 wo, Vec3 wi, TransportMode) const {
     return wi.z > 0.0f ? at(dot(mirrored(wo), wi)) : Vec3{};
   }
   float pdf(Vec3 wo, Vec3 wi) const {
     return wi.z > 0.0f ? pdfPowerCosine(dot(mirrored(wo), wi), exponent) : 0.0f;
   }
   bool sample(Vec3 wo, float, Point2 at, LobeSample& out) const {
-    out.wi = Basis(mirrored(wo)).toWorld(samplePowerCosine(at.x, at.y, exponent));
+    out.wi = Frame(mirrored(wo)).toWorld(samplePowerCosine(at.x, at.y, exponent));
     return out.wi.z > 0.0f;
   }
   Vec3 albedo(Vec3) const { return colour; }  // at normal incidence

@@ -48,7 +48,7 @@ void LocalLights::shootFrom(const Bsdf& shooter, uint64_t key) {
     for (uint32_t k = begin; k < end; ++k) {
       Rng rng = Rng::stratified(key, k);
       BsdfSample sample;
-      if (!sampleNextRay(accel_, shooter, LobeGroup::Rough, Transport::Radiance, rng, sample,
+      if (!sampleNextRay(accel_, shooter, LobeGroup::Rough, TransportMode::Radiance, rng, sample,
                          batch[numbers.size()]))
         continue;
       numbers.push_back(rng);
@@ -128,7 +128,7 @@ void LocalLights::findRadiance(const SurfacePoint& hit, Rng& rng, Light& light,
     BsdfSample sample;
     Ray next;
     if (vertices == kMaxVertices ||
-        !sampleNextRay(accel_, bsdf, LobeGroup::Rough, Transport::Radiance, rng, sample, next))
+        !sampleNextRay(accel_, bsdf, LobeGroup::Rough, TransportMode::Radiance, rng, sample, next))
       return;
     SurfacePoint found;
     ++raysSent_;

@@ -39,7 +39,7 @@ float areaOf(uint32_t i, const Coverage& coverage) {
 
 }  // namespace
 
-NearField::NearField(const VplTable& lit, const Accelerator& accel, float clamp, LightKind kind,
+NearField::NearField(const VplTable& lit, const Accelerator& accel, float clamp, VplKind kind,
                      const VplGroups& groups)
     : lit_(lit),
       coverage_(lit.position, lit.normal,

@@ -16,7 +16,7 @@ namespace bnvpl {
 class NearField {
  public:
   // Borrows the table and the scene. `clamp`, `kind` and `groups`: those of makeVplLights().
-  NearField(const VplTable& lit, const Accelerator& accel, float clamp, LightKind kind = {},
+  NearField(const VplTable& lit, const Accelerator& accel, float clamp, VplKind kind = {},
             const VplGroups& groups = {});
 
   // `coverLookup`: the result of coverage().lookUp() for the point.
@@ -31,7 +31,7 @@ class NearField {
 
   const VplTable& lit_;
   Coverage coverage_;
-  LightKind kind_;
+  VplKind kind_;
   std::vector<float> clampRadius_;  // one per VPL, world units
   uint32_t groups_;
   std::vector<Vec3> multiBounceFlux_;  // by light group, VPL after VPL

@@ -53,7 +53,7 @@ class Sphere {
 
 // Difference between the most and the least light that a node's VPLs may send, summed over the
 // channels; or nothing if none can arrive.
-float spread(const OctreeNode& n, LightKind kind, Vec3 intensity, const Bsdf& bsdf) {
+float spread(const OctreeNode& n, VplKind kind, Vec3 intensity, const Bsdf& bsdf) {
   const Vec3 at = bsdf.point().position;
   const Sphere sphere(n.bounds, at);
   const CosineRange receiver = sphere.cosines(bsdf.point().ns);

@@ -24,7 +24,7 @@ constexpr uint32_t kOrigins = 8;
 // Lower bound of the albedo. Incident light that is inferred from darker VPLs is mostly noise.
 constexpr float kMinAlbedo = 0.01f;
 
-Vec3 toLocal(const Basis& b, Vec3 v) { return {dot(v, b.s), dot(v, b.t), dot(v, b.n)}; }
+Vec3 toLocal(const Frame& b, Vec3 v) { return {dot(v, b.s), dot(v, b.t), dot(v, b.n)}; }
 
 uint32_t sideOf(uint64_t raysEach) {
   auto side = static_cast<uint32_t>(std::sqrt(static_cast<double>(raysEach)));
@@ -80,7 +80,7 @@ void Guide::findRadiance(const VplTable& lit, const NearSurfaces& near) {
 void Guide::learn(const Accelerator& accel, const LightSet& lights, uint64_t key, uint32_t region,
                   float radius, std::span<Learnt> learnt) const {
   Rng rng(key, region);
-  const Basis frame(normal_[region]);
+  const Frame frame(normal_[region]);
   const Vec3 centre = accel.offsetOrigin(position_[region], normal_[region]);
   std::array<Vec3, kOrigins> origins;
   origins.fill(centre);
@@ -124,9 +124,9 @@ std::vector<float> Guide::smooth(const NearSurfaces& near, std::span<const Learn
   std::vector<float> out(position_.size() * cells);
   parallelFor(position_.size(), 16, [&](size_t i) {
     std::vector<Mean> means(cells), strata(each);
-    const Basis frame(normal_[i]);
+    const Frame frame(normal_[i]);
     near.forEach(i, [&](uint32_t k) {
-      const Basis other(normal_[k]);
+      const Frame other(normal_[k]);
       for (const Learnt& l : learnt.subspan(size_t{k} * each, each)) {
         uint32_t cell = l.cell;
         if (normal_[k] != normal_[i]) {
@@ -168,11 +168,11 @@ Vec3 Guide::sample(uint32_t region, Point2 at, float& pdf) const {
   const auto cell = static_cast<uint32_t>(sampleCdf(cdf(region), at.x));
   const Vec3 local = grid_.direction(cell, at.x, at.y);
   pdf = cdfShare(cdf(region), cell) * grid_.pdfInCell(local.z);
-  return Basis(normal_[region]).toWorld(local);
+  return Frame(normal_[region]).toWorld(local);
 }
 
 float Guide::pdf(uint32_t region, Vec3 wi) const {
-  const Vec3 local = toLocal(Basis(normal_[region]), wi);
+  const Vec3 local = toLocal(Frame(normal_[region]), wi);
   if (local.z <= 0.0f) return 0.0f;
   return cdfShare(cdf(region), grid_.cellOf(local)) * grid_.pdfInCell(local.z);
 }

@@ -9,7 +9,7 @@
 #include "spatial/near_surfaces.h"
 #include "spatial/region_grid.h"
 #include "tools/render/integrator/guided/direction_grid.h"
-#include "tools/render/tile/reuse/directions.h"
+#include "tools/render/tile/directions.h"
 #include "transport/lights.h"
 
 namespace bnvpl {

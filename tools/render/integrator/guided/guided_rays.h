@@ -3,7 +3,7 @@
 #pragma once
 
 #include "tools/render/integrator/guided/guide.h"
-#include "tools/render/tile/reuse/indirect_rays.h"
+#include "tools/render/tile/indirect_rays.h"
 #include "transport/spatial_light_sampler.h"
 #include "transport/specular_path.h"
 

@@ -232,7 +232,8 @@ bool NearFieldRays::extend(Path& path, const Bsdf& bsdf) const {
   BsdfSample sample;
   Ray next;
   if (path.segments == kMaxSegments ||
-      !sampleNextRay(accel_, bsdf, LobeGroup::Rough, Transport::Radiance, path.rng, sample, next)) {
+      !sampleNextRay(accel_, bsdf, LobeGroup::Rough, TransportMode::Radiance, path.rng, sample,
+                     next)) {
     return false;
   }
   ++path.out.continued;

@@ -7,7 +7,7 @@
 
 #include "tools/render/compensate/compensate.h"
 #include "tools/render/gather/gather.h"
-#include "tools/render/tile/reuse/indirect_rays.h"
+#include "tools/render/tile/indirect_rays.h"
 #include "transport/spatial_light_sampler.h"
 #include "transport/specular_path.h"
 

@@ -5,9 +5,9 @@
 
 #include "tools/common/files/streams.h"
 #include "tools/render/gather/point_gather.h"
-#include "tools/render/integrator/light_kind.h"
 #include "tools/render/integrator/tile_options.h"
 #include "tools/render/integrator/vpl/near_field_rays.h"
+#include "tools/render/integrator/vpl_kind.h"
 #include "tools/render/stage_options.h"
 
 namespace bnvpl::methods::integrator::vpl {
@@ -123,7 +123,7 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   const float clamp = indirect ? options.real32(kClampOption) : 1.0f;
   const auto parts = std::make_shared<Parts>();
   const CompensateMethod* compensate = compensationOf(options);
-  const LightKind light = indirect ? lightKindOf(options) : LightKind{};
+  const VplKind light = indirect ? vplKindOf(options) : VplKind{};
   parts->vpls = makeVplLights(in.lit, in.accel, clamp, light, in.litGroups,
                               compensate && compensate->oneSize ? commonRadius(in.lit) : 0.0f);
   Compensation compensation;

@@ -118,7 +118,7 @@ void Caustics::add(const Splat& splat) {
   }
 }
 
-SharedWithPhotons Caustics::shared(const SurfacePoint& point, Vec3 origin) const {
+PhotonMis Caustics::shared(const SurfacePoint& point, Vec3 origin) const {
   return sharedBy(samplesPerArea(accel_.scene(), point, origin));
 }
 
@@ -126,7 +126,7 @@ Vec3 Caustics::lensPoint(Rng& rng) const {
   return sampleLens(accel_.scene().camera, [&] { return rng.nextPoint(); });
 }
 
-SharedWithPhotons Caustics::sharedBy(float samplesPerArea) const {
+PhotonMis Caustics::sharedBy(float samplesPerArea) const {
   return {&lights_, raysOfPixel_ * samplesPerArea, static_cast<float>(photons_),
           chosen_ ? &dense_ : nullptr, &guide_};
 }
@@ -167,7 +167,8 @@ void Caustics::trace(const Photon& photon, Rng& rng, Splats& out) const {
     }
     if (!(bsdf.specularProbability() > 0.0f)) return;
     BsdfSample sample;
-    if (!sampleNextRay(accel_, bsdf, LobeGroup::Specular, Transport::Photons, rng, sample, next))
+    if (!sampleNextRay(accel_, bsdf, LobeGroup::Specular, TransportMode::Importance, rng, sample,
+                       next))
       return;
     flux *= sample.weight;
     if (specularBounces == 0) {
@@ -184,7 +185,8 @@ void Caustics::followBounces(const Bsdf& bsdf, Vec3 flux, const Photon& photon, 
                              Splats& out) const {
   BsdfSample sample;
   Ray next;
-  if (!sampleNextRay(accel_, bsdf, LobeGroup::Rough, Transport::Photons, rng, sample, next)) return;
+  if (!sampleNextRay(accel_, bsdf, LobeGroup::Rough, TransportMode::Importance, rng, sample, next))
+    return;
   const float survive = std::min(1.0f, maxComponent(sample.weight));
   if (rng.next() >= survive) return;
   PhotonWalk walk({next.origin, next.direction, flux * sample.weight * (1.0f / survive)}, bounces_,
@@ -206,7 +208,8 @@ void Caustics::connect(const SurfacePoint& vertex, Vec3 flux, const Photon& phot
   const auto film = connectToFilm(accel_, vertex, photon.lens, filter);
   if (!film) return;
   const float share =
-      1.0f - sharedBy(film->perArea).ofRays(photon.light, -photon.start.direction, photon.guided);
+      1.0f -
+      sharedBy(film->perArea).rayWeight(photon.light, -photon.start.direction, photon.guided);
   const Vec3 radiance = flux * film->value * (film->perArea * share);
   if (!isFinite(radiance)) return;
   forPixelsAt(accel_.scene().film, filter, film->at, [&](uint32_t pixel, float value) {

@@ -42,7 +42,7 @@ class Caustics {
   const PhotonLight& at(uint32_t x, uint32_t y) const { return light_[size_t{y} * width_ + x]; }
   // Parameters of MIS with rays that leave a point that is directly visible from `origin`, the
   // origin of the camera ray.
-  SharedWithPhotons shared(const SurfacePoint& point, Vec3 origin) const;
+  PhotonMis shared(const SurfacePoint& point, Vec3 origin) const;
   CausticStats stats() const { return {lamps_, lamps_ - dense_.size(), useful_}; }
 
  private:
@@ -53,7 +53,7 @@ class Caustics {
   void learnEmission(uint64_t key, const ProgressFn& progress);
   void chooseLamps(uint64_t key, const ProgressFn& progress);
   void add(const Splat& splat);
-  SharedWithPhotons sharedBy(float samplesPerArea) const;
+  PhotonMis sharedBy(float samplesPerArea) const;
   Vec3 lensPoint(Rng& rng) const;
   // Follows one photon. Returns its lamp, or kNoLamp if no ray can hit that.
   static constexpr uint64_t kNoLamp = UINT64_MAX;

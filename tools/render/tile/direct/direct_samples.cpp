@@ -70,7 +70,7 @@ Vec3 DirectSamples::bsdfRay(const Bsdf& bsdf, Vec3 throughput, const Rays& rays,
                             const LearnedLight& learned, Rng& rng, const GroupSink& lit) const {
   BsdfSample next;
   if ((rays.bsdf < 1.0f && rng.next() >= rays.bsdf) ||
-      !bsdf.sample(LobeGroup::Rough, Transport::Radiance, rng, next))
+      !bsdf.sample(LobeGroup::Rough, TransportMode::Radiance, rng, next))
     return {};
   const Arrival arrival{next.pdf * rays.bsdf,
                         bsdf.point().position,

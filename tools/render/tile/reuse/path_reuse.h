@@ -26,7 +26,7 @@
 #include <vector>
 
 #include "tools/render/compensate/compensate.h"
-#include "tools/render/tile/reuse/directions.h"
+#include "tools/render/tile/directions.h"
 #include "transport/accelerator.h"
 
 namespace bnvpl {

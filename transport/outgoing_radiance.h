@@ -11,8 +11,8 @@ struct PathLength {
   bool firstBounce = false;  // whether to estimate direct light at the vertex only
 };
 
-// Receive `first` and `later` of addLeavingLight() by group.
-struct LeavingGroups {
+// Receive `first` and `later` of addOutgoingRadiance() by group.
+struct OutgoingGroups {
   GroupSink first, later;
 };
 
@@ -21,9 +21,9 @@ struct LeavingGroups {
 // vertex, `later` the rest. `start` is the vertex's BSDF, or one that represents it. `lightSampler`
 // has the distributions by which lights are sampled; null: by power. Returns the number of rough
 // vertices of the path, this one included; each takes about two rays.
-unsigned addLeavingLight(const Accelerator& accel, const LightSet& lights, const Bsdf& start,
-                         Vec3 throughput, PathLength length,
-                         const SpatialLightSampler* lightSampler, Rng& rng, Vec3& first,
-                         Vec3& later, const LeavingGroups& groups = {});
+unsigned addOutgoingRadiance(const Accelerator& accel, const LightSet& lights, const Bsdf& start,
+                             Vec3 throughput, PathLength length,
+                             const SpatialLightSampler* lightSampler, Rng& rng, Vec3& first,
+                             Vec3& later, const OutgoingGroups& groups = {});
 
 }  // namespace bnvpl

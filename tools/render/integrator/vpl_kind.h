@@ -7,7 +7,7 @@
 namespace bnvpl {
 
 // The default kind for methods without the option.
-LightKind lightKindOf(const Values& options);
+VplKind vplKindOf(const Values& options);
 // Throws UsageError if the compensation cannot take the kind of light.
 void requireTakenLight(const Values& options);
 

@@ -54,7 +54,7 @@ class Directions {
 
  private:
   bool sampleBsdf(float pick, Point2 at, BsdfSample& out) const {
-    return bsdf_->sample(LobeGroup::Rough, Transport::Radiance, pick, at, out);
+    return bsdf_->sample(LobeGroup::Rough, TransportMode::Radiance, pick, at, out);
   }
 
   const Bsdf* bsdf_;

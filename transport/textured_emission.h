@@ -14,13 +14,13 @@
 
 namespace bnvpl {
 
-class LampTexture {
+class TexturedEmission {
  public:
   static constexpr double kMaxCells = 0x1p19;
   static constexpr double kMaxSquares = 2 * kMaxCells;  // number of squares of checkerboards
 
   // Takes an emissive material of the scene, and the triangles that have it. Borrows the scene.
-  LampTexture(const Scene& scene, uint32_t material, std::span<const uint32_t> triangles);
+  TexturedEmission(const Scene& scene, uint32_t material, std::span<const uint32_t> triangles);
 
   // The side of a grid (emission_grid.h) whose cells are about a texel.
   uint32_t side(uint32_t triangle) const;

@@ -64,7 +64,7 @@ struct RayOrigin {
   const Directions& directions;
   Vec3 throughput;              // from the shading point to the camera
   const LearnedLight& learned;  // how its shadow rays choose lights, for MIS with the rays
-  SharedWithPhotons shared;     // MIS with caustic photons
+  PhotonMis shared;             // MIS with caustic photons
   bool reuse = false;           // whether other samples reuse the vertices
 };
 

@@ -1,4 +1,4 @@
-#include "transport/lamp_texture.h"
+#include "transport/textured_emission.h"
 
 #include <algorithm>
 #include <cmath>
@@ -55,7 +55,7 @@ void addImages(const Scene& scene, uint32_t expression, std::vector<uint32_t>& o
 
 }  // namespace
 
-struct LampTexture::Polygon {
+struct TexturedEmission::Polygon {
   std::array<Corner, 16> corners;
   size_t count = 0;
   void add(const Corner& c) {
@@ -79,9 +79,10 @@ struct LampTexture::Polygon {
   }
 };
 
-double LampTexture::Lines::perUv() const { return std::fabs(a * e - b * d); }
+double TexturedEmission::Lines::perUv() const { return std::fabs(a * e - b * d); }
 
-LampTexture::LampTexture(const Scene& scene, uint32_t material, std::span<const uint32_t> triangles)
+TexturedEmission::TexturedEmission(const Scene& scene, uint32_t material,
+                                   std::span<const uint32_t> triangles)
     : scene_(scene), material_(scene.materials[material]) {
   chooseLines();
   Cells all;
@@ -111,7 +112,7 @@ LampTexture::LampTexture(const Scene& scene, uint32_t material, std::span<const 
   exact_ = false;
 }
 
-void LampTexture::coarsen(double factor) {
+void TexturedEmission::coarsen(double factor) {
   std::vector<uint32_t> images;
   addImages(scene_, material_.emissionTexture, images);
   coarse_.resize(scene_.textures.size());
@@ -124,7 +125,7 @@ void LampTexture::coarsen(double factor) {
   }
 }
 
-LampTexture::Lines LampTexture::linesOf(const TextureExpression& e) const {
+TexturedEmission::Lines TexturedEmission::linesOf(const TextureExpression& e) const {
   const UvTransform& m = e.uv;
   Lines l{m.a, m.b, m.c, m.d, m.e, m.f};
   if (e.kind == TextureExpression::Kind::Checkerboard) {
@@ -143,7 +144,7 @@ LampTexture::Lines LampTexture::linesOf(const TextureExpression& e) const {
   return l;
 }
 
-void LampTexture::addLines(uint32_t expression, std::vector<Lines>& out) const {
+void TexturedEmission::addLines(uint32_t expression, std::vector<Lines>& out) const {
   if (expression == kNone) return;
   const TextureExpression& e = scene_.expressions[expression];
   using Kind = TextureExpression::Kind;
@@ -153,7 +154,7 @@ void LampTexture::addLines(uint32_t expression, std::vector<Lines>& out) const {
 }
 
 // Takes the lines of the finest texture; for others the quadrature is approximate.
-void LampTexture::chooseLines() {
+void TexturedEmission::chooseLines() {
   std::vector<Lines> all;
   addLines(material_.emissionTexture, all);
   const size_t ofEmission = all.size();
@@ -169,7 +170,8 @@ void LampTexture::chooseLines() {
   exact_ = ofEmission == 0 || (ofEmission == 1 && finest == all.begin());
 }
 
-std::optional<std::array<std::array<double, 2>, 3>> LampTexture::uvsOf(uint32_t triangle) const {
+std::optional<std::array<std::array<double, 2>, 3>> TexturedEmission::uvsOf(
+    uint32_t triangle) const {
   const Triangle& t = scene_.triangles[triangle];
   std::array<std::array<double, 2>, 3> out{};
   for (size_t k = 0; k < 3; ++k) {
@@ -181,7 +183,7 @@ std::optional<std::array<std::array<double, 2>, 3>> LampTexture::uvsOf(uint32_t 
   return out;
 }
 
-LampTexture::Cells LampTexture::cellsOf(uint32_t triangle) const {
+TexturedEmission::Cells TexturedEmission::cellsOf(uint32_t triangle) const {
   const auto uv = uvsOf(triangle);
   if (!uv) return {};
   std::array<double, 3> x{}, y{};
@@ -199,7 +201,7 @@ LampTexture::Cells LampTexture::cellsOf(uint32_t triangle) const {
   return {std::min(area, ex * ey), ex + ey};
 }
 
-uint32_t LampTexture::side(uint32_t triangle) const {
+uint32_t TexturedEmission::side(uint32_t triangle) const {
   if (material_.emissionTexture == kNone) return 1;
   constexpr double kMax = 1024;
   const Cells cells = cellsOf(triangle);
@@ -207,7 +209,7 @@ uint32_t LampTexture::side(uint32_t triangle) const {
 }
 
 template <typename Fn>
-void LampTexture::forBands(const Polygon& polygon, size_t axis, const Fn& fn) const {
+void TexturedEmission::forBands(const Polygon& polygon, size_t axis, const Fn& fn) const {
   double low = INFINITY, high = -INFINITY;
   for (size_t i = 0; i < polygon.count; ++i) {
     low = std::min(low, Polygon::along(polygon.corners[i], axis));
@@ -228,8 +230,8 @@ void LampTexture::forBands(const Polygon& polygon, size_t axis, const Fn& fn) co
   fn(rest);
 }
 
-LampTexture::Mean LampTexture::over(uint32_t triangle,
-                                    const std::array<std::array<double, 2>, 3>& part) const {
+TexturedEmission::Mean TexturedEmission::over(
+    uint32_t triangle, const std::array<std::array<double, 2>, 3>& part) const {
   Polygon whole;
   const auto uv = uvsOf(triangle);
   for (const auto& [b1, b2] : part) {
@@ -262,8 +264,8 @@ LampTexture::Mean LampTexture::over(uint32_t triangle,
 
 // Quadrature with three interior points (Strang & Fix 1973), which is exact up to degree 2 and has
 // no point on a line.
-void LampTexture::add(uint32_t triangle, const std::array<Corner, 3>& piece, int halvings,
-                      Mean& sum) const {
+void TexturedEmission::add(uint32_t triangle, const std::array<Corner, 3>& piece, int halvings,
+                           Mean& sum) const {
   const auto& [p, q, r] = piece;
   const auto between = [](const Corner& a, const Corner& b) {
     return Corner{0.5 * (a.b1 + b.b1), 0.5 * (a.b2 + b.b2), 0, 0};
@@ -282,7 +284,8 @@ void LampTexture::add(uint32_t triangle, const std::array<Corner, 3>& piece, int
   }
 }
 
-void LampTexture::addPoint(uint32_t triangle, double b1, double b2, double area, Mean& sum) const {
+void TexturedEmission::addPoint(uint32_t triangle, double b1, double b2, double area,
+                                Mean& sum) const {
   Vec3 emission = material_.emission;
   bool there = !(material_.opacity < material_.opacityCutoff);
   if (const auto uv = uvsOf(triangle)) {

@@ -1,4 +1,4 @@
-#include "tools/render/integrator/light_kind.h"
+#include "tools/render/integrator/vpl_kind.h"
 
 #include "core/errors.h"
 #include "tools/render/integrator/integrator.h"
@@ -11,12 +11,12 @@ constexpr OptionKey<std::string> kLightKey{"light"};
 
 }  // namespace
 
-LightKind lightKindOf(const Values& options) {
-  return options.has(kLightKey) ? lightKindNamed(options[kLightKey]) : LightKind{};
+VplKind vplKindOf(const Values& options) {
+  return options.has(kLightKey) ? lightKindNamed(options[kLightKey]) : VplKind{};
 }
 
 void requireTakenLight(const Values& options) {
-  if (isFromCentre(lightKindOf(options))) return;
+  if (isFromCentre(vplKindOf(options))) return;
   const std::string& name = options[kLightKey];
   const CompensateMethod* compensate = compensationOf(options);
   if (compensate && compensate->oneSize)

@@ -1,4 +1,4 @@
-#include "transport/leaving_light.h"
+#include "transport/outgoing_radiance.h"
 
 #include <optional>
 
@@ -6,10 +6,10 @@
 
 namespace bnvpl {
 
-unsigned addLeavingLight(const Accelerator& accel, const LightSet& lights, const Bsdf& start,
-                         Vec3 throughput, PathLength length,
-                         const SpatialLightSampler* lightSampler, Rng& rng, Vec3& first,
-                         Vec3& later, const LeavingGroups& groups) {
+unsigned addOutgoingRadiance(const Accelerator& accel, const LightSet& lights, const Bsdf& start,
+                             Vec3 throughput, PathLength length,
+                             const SpatialLightSampler* lightSampler, Rng& rng, Vec3& first,
+                             Vec3& later, const OutgoingGroups& groups) {
   SpecularPath vertex;
   std::optional<Bsdf> scattering;
   LearnedStrata strata;
@@ -27,7 +27,8 @@ unsigned addLeavingLight(const Accelerator& accel, const LightSet& lights, const
     if (rng.next() >= survive) return bounce + 1;
     BsdfSample scattered;
     Ray next;
-    if (!sampleNextRay(accel, bsdf, LobeGroup::Rough, Transport::Radiance, rng, scattered, next))
+    if (!sampleNextRay(accel, bsdf, LobeGroup::Rough, TransportMode::Radiance, rng, scattered,
+                       next))
       return bounce + 1;
     throughput *= scattered.weight * (1.0f / survive);
     const Arrival arrival{scattered.pdf, bsdf.point().position, LightChoice::One,
