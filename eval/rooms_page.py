@@ -56,12 +56,14 @@ def two(value: float) -> str:
 
 
 def indirect_mean(rows: list[dict[str, Any]]) -> float:
-    """Our indirect mean over that of all others, weighted by their inverse squared RMSE."""
-    weights = [float(row["its_rmse"]) ** -2 for row in rows]
-    return (
-        float(rows[0]["mean"])
-        * sum(weights)
-        / sum(w * float(row["its_mean"]) for w, row in zip(weights, rows, strict=True))
+    """Our indirect mean over those of the others, weighted by their inverse squared RMSE.
+
+    Each ratio is of one run. Redistributing fireflies lowers the error of pixels, not of the mean.
+    """
+    used = [row for row in rows if not str(row["beside"]).startswith("spread-")]
+    weights = [float(row["its_rmse"]) ** -2 for row in used]
+    return sum(weights) / sum(
+        w * float(row["its_mean"]) / float(row["mean"]) for w, row in zip(weights, used, strict=True)
     )
 
 

@@ -4,10 +4,13 @@ At equal time each gather takes as many samples a pixel as fit in the time of th
 noise counts beside its own error. Near-field rays are off, as they cost the same for all gathers.
 """
 
+from functools import partial
+
 from .. import images, pipeline, statistics
 from ..context import Context
 from ..settings import View
 from ..tables import column, table
+from .field import MAX_SPP, fitting_spp
 
 COLUMNS = [
     column("label", "gather"),
@@ -22,7 +25,6 @@ COLUMNS = [
 ]
 # Those of the thesis and around it; the part `field` has all.
 GATHERS = ("all", "lightcuts", "lightslice", "stochastic", "tilecuts", "ward")
-MOST_SPP = 256  # bound on the samples a pixel at equal time
 
 
 def run(context: Context) -> None:
@@ -50,8 +52,9 @@ def run(context: Context) -> None:
             row["cut_rmse"] = statistics.root(difference) / float(mean)
         slowest = max(row["render_cpu_s"] for row in made.values())
         for gather, row in made.items():
-            spp = max(1, min(MOST_SPP, round(row["spp"] * slowest / row["render_cpu_s"])))
-            c = configuration(context, view, gather).but(spp=spp)
+            c = configuration(context, view, gather)
+            spp = max(1, fitting_spp(partial(cpu_s, context, view, c), c.spp, slowest))
+            c = c.but(spp=spp)
             equal = context.judge("gather-equal-time", view, c, seeds, label=gather)
             row |= {"equal_spp": spp, "equal_relmse": equal["relmse"]}
         title = f"{view.scene.title}, {made['all']['vpls']} VPLs"
@@ -63,11 +66,17 @@ def run(context: Context) -> None:
             f"The same VPLs and rays, {plan['seeds']} seeds, --compensate none; a gather's own "
             "error is its "
             "difference to all VPLs. At equal time: samples a pixel in the CPU time of the "
-            f"slowest, at most {MOST_SPP}.",
+            f"slowest, at most {MAX_SPP}.",
             COLUMNS,
             rows,
         )
     )
+
+
+def cpu_s(context: Context, view: View, c: pipeline.Configuration, spp: int) -> float:
+    """CPU seconds of vpl-render with so many samples a pixel."""
+    _, runs = pipeline.image(context.runner, view, c.but(spp=spp), 1)
+    return runs[-1].cpu_s
 
 
 def configuration(context: Context, view: View, gather: str) -> pipeline.Configuration:
