@@ -222,9 +222,13 @@ def main() -> int:
     )
     parser.add_argument("--picture-spp", type=int, default=32)
     parser.add_argument("--photons", default="4M")
-    parser.add_argument("--no-table", action="store_true", help="leave the pages as they are")
+    parser.add_argument(
+        "--no-table", action="store_true", help="leave the pages, as without all scenes"
+    )
     parser.add_argument("--pictures", action="store_true", help="make no comparisons and no table")
     arguments = parser.parse_args()
+    if unknown := set(arguments.scenes) - {scene.id for scene in SCENES}:
+        parser.error(f"no scene is named {', '.join(sorted(unknown))}")
     gallery = Gallery(
         Runner(arguments.bin.resolve(), arguments.cache.resolve()), arguments.spp, arguments.photons
     )
@@ -243,7 +247,7 @@ def main() -> int:
             continue
         rows.append(gallery.row(scene))
         print(rows[-1], flush=True)
-    if not arguments.no_table and not arguments.pictures:
+    if len(rows) == len(SCENES) and not arguments.no_table:  # a part would replace the whole table
         write_table(rows)
     return 0
 

@@ -100,6 +100,8 @@ def main() -> int:
         "reference": f"2 x {arguments.reference_spp} spp, {arguments.truth}",
         "path_length": arguments.path_length,
     }
+    if unknown := set(arguments.rooms or []) - {scene.id for scene in SCENES}:
+        sys.exit(f"rooms: no room is named {', '.join(sorted(unknown))}; --help lists them")
     for scene in SCENES:
         if arguments.rooms and scene.id not in arguments.rooms:
             continue

@@ -97,6 +97,12 @@ float Texture::texelAlpha(uint32_t column, uint32_t row) const {
   return alphaAt(size_t{row} * width + column);
 }
 
+bool Texture::hasAlpha() const {
+  for (size_t texel = 0; texel < size_t{width} * height; ++texel)
+    if (alphaAt(texel) != 1.0f) return true;
+  return false;
+}
+
 void Texture::prefetch(float u, float v) const {
   const std::optional<Bilinear> b = bilinear(*this, u, v);
   if (!b || rgba.empty()) return;

@@ -30,6 +30,7 @@ struct Texture {
   Vec3 lookup(float u, float v) const;              // bilinear, linear sRGB
   Vec3 texel(uint32_t column, uint32_t row) const;  // linear sRGB
   float texelAlpha(uint32_t column, uint32_t row) const;
+  bool hasAlpha() const;                      // whether the alpha of any texel is not 1
   void prefetch(float u, float v) const;      // prefetches what lookup() will read
   float lookupAlpha(float u, float v) const;  // bilinear; the mask: see loadTexture
 

@@ -147,9 +147,21 @@ std::optional<TextureUse> Textures::imageUse(const TextureEntity& t) {
   return use;
 }
 
+bool Textures::takesAlpha(const fs::path& file) {
+  const auto [known, isNew] = takesAlpha_.try_emplace(file, false);
+  if (isNew) {
+    try {
+      known->second = loadTexture(file, false, false).hasAlpha();
+    } catch (const InputError&) {  // addGreyableImage() tells why
+    }
+  }
+  return known->second;
+}
+
 uint32_t Textures::imagemap(const TextureEntity& t) {
   const std::optional<TextureUse> use = imageUse(t);
-  TextureExpression e = imageExpression(kNone, t.isSpectrum ? Channel::Rgb : Channel::Mean);
+  TextureExpression e = imageExpression(kNone, Channel::Rgb);
+  if (!t.isSpectrum) e.channel = takesAlpha(use->file) ? Channel::Alpha : Channel::Mean;
   const std::string wrap = t.params.text("wrap", "repeat");
   if (wrap == "clamp" || wrap == "black") {
     e.wrapU = e.wrapV = wrap == "clamp" ? Wrap::Clamp : Wrap::Black;

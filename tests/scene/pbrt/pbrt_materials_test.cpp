@@ -187,10 +187,9 @@ TEST_F(PbrtMaterials, AlphaCutsAway) {
   EXPECT_GT(s.textures.at(m.opacityMap).lookupAlpha(0.25f, 0.5f), 0.9f);
   EXPECT_LT(s.textures.at(m.opacityMap).lookupAlpha(0.75f, 0.5f), 0.1f);
   EXPECT_EQ(s.maskedBegin, 0u);
-  // A mask that another texture uses, too, is the same image there.
-  write("leaf.tga", tga(2, 1, {{255, 255, 255, 255}, {0, 0, 0, 255}}));
+  // A mask that another texture uses, too, is the same image there: its alpha.
   const Scene both = loadWorld(
-      "Texture \"a\" \"float\" \"imagemap\" \"string filename\" \"leaf.tga\"\n"
+      "Texture \"a\" \"float\" \"imagemap\" \"string filename\" \"t.tga\"\n"
       "Texture \"b\" \"float\" \"scale\" \"texture tex\" \"a\" \"float scale\" 0.9\n"
       "AttributeBegin\nAttribute \"shape\" \"texture alpha\" \"a\"\n" +
       kSquareShape + "AttributeEnd\nAttribute \"shape\" \"texture alpha\" \"b\"\n");
