@@ -15,8 +15,9 @@ namespace bnvpl {
 
 namespace {
 
-// Measured: 140 and, with the light tree, the near field and what lights its hits, 1,400 to 2,600.
-constexpr double kBytesPerVpl = 140, kBytesPerVplWithNearField = 1400;
+// Measured with a million VPLs of one emission point each: 1,450 for most gathers and, with the near
+// field and what lights its hits, 2,290. More points take more.
+constexpr double kBytesPerVpl = 1400, kBytesPerVplWithNearField = 2200;
 
 // "--integrator light or path".
 std::string withoutVpls() {
