@@ -60,7 +60,7 @@ inline bool isFinite(Vec3 a) {
 constexpr Vec3 reflect(Vec3 w, Vec3 n) { return 2.0f * dot(w, n) * n - w; }
 
 // Two unit vectors that complete the unit vector `n` to a right-handed basis (s, t, n).
-// Duff et al. 2017, "Building an Orthonormal Frame, Revisited".
+// Duff et al. 2017, "Building an Orthonormal Basis, Revisited".
 struct Frame {
   Vec3 s, t, n;
   explicit Frame(Vec3 normal) : n(normal) {

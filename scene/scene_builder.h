@@ -73,8 +73,9 @@ class SceneBuilder {
   // Returns the number for a Material's map; equal uses share one. Returns kNone, with a warning,
   // if the file does not exist. finish() removes a damaged texture from its materials.
   uint32_t addTexture(const TextureUse& use, const std::string& otherwise = kPlainColour);
-  // Adds an image expression that is grey, 0.5, if the image is missing or damaged.
-  uint32_t addGreyableImage(const TextureUse& use, TextureExpression image);
+  // Adds an image expression that is grey, 0.5, if the image is missing or damaged. `prefersAlpha`:
+  // it takes the alpha of an image that has one, whatever its channel.
+  uint32_t addGreyableImage(const TextureUse& use, TextureExpression image, bool prefersAlpha);
   // Returns the number for a parameter of a material. Operands are numbers of expressions added
   // before, the image is a number from addTexture(). A damaged image counts as white.
   uint32_t addExpression(const TextureExpression& expression);
@@ -187,6 +188,10 @@ class SceneBuilder {
     uint32_t material, object;  // `material` is kNone for grey until the triangle is found usable
     auto operator<=>(const Surface&) const = default;
   };
+  struct Greyable {
+    uint32_t expression;  // a number from addGreyableImage()
+    bool prefersAlpha;
+  };
   struct Include {
     fs::path file;
     Affine outer;  // place_ of the outer file
@@ -254,7 +259,7 @@ class SceneBuilder {
   std::map<std::string, uint32_t> objectNumbers_;
   uint32_t open_ = kNone;                     // prototype that receives meshes; kNone: the world
   uint32_t shared_ = kNone;                   // the same, during finish()
-  std::vector<uint32_t> greyable_;            // numbers from addGreyableImage()
+  std::vector<Greyable> greyable_;
   std::vector<uint32_t> lookups_;             // lookups per expression, operands included
   std::vector<FilePoint> viewPositions_;      // positions of scene_.views
   std::vector<FilePoint> lightPositions_;     // positions of scene_.lights

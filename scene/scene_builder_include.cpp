@@ -66,23 +66,23 @@ void SceneBuilder::endInclude() {
   placed_.resize(done.placed);
   scene_.lights.resize(done.lights);
   lightPositions_.resize(done.lights);
-  bool first = true, several = false;
-  for (const auto& [toScene, object] : done.instances) {
+  const auto isEverywhere = [](const LightSpec& light) {
+    return light.type == LightType::Environment || light.type == LightType::Directional;
+  };
+  for (size_t k = 0; k < done.instances.size(); ++k) {
+    const auto& [toScene, object] = done.instances[k];
     for (const Placed& p : meshes)
       addInstance(p.prototype, toScene * p.toWorld, object == kNone ? p.object : object);
     for (size_t i = 0; i < lights.size(); ++i) {
+      if (k > 0 && isEverywhere(lights[i])) continue;  // it would shine once more
       LightSpec light = lights[i];
-      if (light.type == LightType::Environment || light.type == LightType::Directional) {
-        several = several || !first;
-        if (!first) continue;  // it is everywhere, and would shine once more
-      }
       FilePoint position = positions[i];
       placeLight(toScene, light, position);
       addLight(light, position);
     }
-    first = false;
   }
-  if (several) warn(done.file.string() + ": its skies and suns shine once, as in its first place");
+  if (done.instances.size() > 1 && std::ranges::any_of(lights, isEverywhere))
+    warn(done.file.string() + ": its skies and suns shine once, as in its first place");
 }
 
 void SceneBuilder::addInstance(uint32_t prototype, const Affine& toWorld, uint32_t object) {

@@ -45,11 +45,12 @@ uint32_t SceneBuilder::addReplacement(Material material) {
   return replacements_[name] = addMaterial(std::move(material));
 }
 
-uint32_t SceneBuilder::addGreyableImage(const TextureUse& use, TextureExpression image) {
+uint32_t SceneBuilder::addGreyableImage(const TextureUse& use, TextureExpression image,
+                                        bool prefersAlpha) {
   image.image = addTexture(use, kGrey);
   if (image.image == kNone) return addExpression(constantExpression(Vec3{0.5f}));
   const uint32_t expression = addExpression(image);
-  greyable_.push_back(expression);
+  greyable_.push_back({expression, prefersAlpha});
   return expression;
 }
 
@@ -157,7 +158,7 @@ uint32_t SceneBuilder::addEnvironment(const fs::path& image, EnvironmentImage ra
 void SceneBuilder::resolveTextures() {
   TexturePool::Result read = textures_.take();
   std::vector<bool> grey(read.indexOf.size(), false);
-  for (const uint32_t e : greyable_) grey[scene_.expressions[e].image] = true;
+  for (const Greyable& g : greyable_) grey[scene_.expressions[g.expression].image] = true;
   size_t next = 0;
   for (size_t i = 0; i < read.indexOf.size(); ++i) {
     if (read.indexOf[i] == TexturePool::kUnreadable)
@@ -172,9 +173,12 @@ void SceneBuilder::resolveTextures() {
   };
   for (Material& m : scene_.materials) forEachImage(m, resolve);
   for (TextureExpression& e : scene_.expressions) resolve(e.image);
-  for (const uint32_t e : greyable_) {
-    if (scene_.expressions[e].image == kNone)
-      scene_.expressions[e] = constantExpression(Vec3{0.5f});
+  for (const Greyable& g : greyable_) {
+    TextureExpression& e = scene_.expressions[g.expression];
+    if (e.image == kNone)
+      e = constantExpression(Vec3{0.5f});
+    else if (g.prefersAlpha && scene_.textures[e.image].hasAlpha())
+      e.channel = Channel::Alpha;
   }
 }
 

@@ -85,12 +85,7 @@ TexturedEmission::TexturedEmission(const Scene& scene, uint32_t material,
                                    std::span<const uint32_t> triangles)
     : scene_(scene), material_(scene.materials[material]) {
   chooseLines();
-  Cells all;
-  for (const uint32_t t : triangles) {
-    const Cells cells = cellsOf(t);
-    all.area += cells.area;
-    all.length += cells.length;
-  }
+  const Cells all = sumOfCells(triangles);
   double factor = 1.0;
   while (all.area / (factor * factor) + all.length / factor > kMaxCells && factor < 0x1p16)
     factor *= 1.25;
@@ -99,12 +94,7 @@ TexturedEmission::TexturedEmission(const Scene& scene, uint32_t material,
   chooseLines();
   // Checkerboards cannot be coarsened. Where their squares are too many, the quadrature has fewer
   // lines than they.
-  Cells left;
-  for (const uint32_t t : triangles) {
-    const Cells cells = cellsOf(t);
-    left.area += cells.area;
-    left.length += cells.length;
-  }
+  const Cells left = sumOfCells(triangles);
   const double fewer = std::max(std::sqrt(left.area / kMaxSquares), left.length / kMaxSquares);
   if (!(fewer > 1.0)) return;
   for (double* along : {&lines_.a, &lines_.b, &lines_.c, &lines_.d, &lines_.e, &lines_.f})
@@ -199,6 +189,16 @@ TexturedEmission::Cells TexturedEmission::cellsOf(uint32_t triangle) const {
   const double area =
       0.5 * std::fabs((x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]));
   return {std::min(area, ex * ey), ex + ey};
+}
+
+TexturedEmission::Cells TexturedEmission::sumOfCells(std::span<const uint32_t> triangles) const {
+  Cells sum;
+  for (const uint32_t t : triangles) {
+    const Cells cells = cellsOf(t);
+    sum.area += cells.area;
+    sum.length += cells.length;
+  }
+  return sum;
 }
 
 uint32_t TexturedEmission::side(uint32_t triangle) const {

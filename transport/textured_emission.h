@@ -54,6 +54,7 @@ class TexturedEmission {
   void chooseLines();
   void coarsen(double factor);
   Cells cellsOf(uint32_t triangle) const;
+  Cells sumOfCells(std::span<const uint32_t> triangles) const;
   std::optional<std::array<std::array<double, 2>, 3>> uvsOf(uint32_t triangle) const;
   template <typename Fn>
   void forBands(const Polygon& polygon, size_t axis, const Fn& fn) const;

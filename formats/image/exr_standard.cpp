@@ -31,10 +31,6 @@ bool isFinite(const ImageCamera& camera) {
 
 }  // namespace
 
-PixelBox dataWindowOf(const Image& image) {
-  return image.dataWindow.value_or(PixelBox{0, 0, image.width, image.height});
-}
-
 Imf::Header standardHeader(const Image& image) {
   const PixelBox box = dataWindowOf(image);
   const ImageCamera camera = image.camera.value_or(ImageCamera{});

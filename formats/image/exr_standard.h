@@ -8,9 +8,6 @@
 
 namespace bnvpl {
 
-// The data window, or all of the image if it has none.
-PixelBox dataWindowOf(const Image& image);
-
 // A header with the image's windows and camera, and the chromaticities of Rec. 709 and D65, which
 // are those of sRGB.
 Imf::Header standardHeader(const Image& image);

@@ -61,4 +61,9 @@ struct Image {
   }
 };
 
+// The pixels that have values.
+inline PixelBox dataWindowOf(const Image& image) {
+  return image.dataWindow.value_or(PixelBox{0, 0, image.width, image.height});
+}
+
 }  // namespace bnvpl

@@ -38,7 +38,7 @@ float exposureOf(const Image& image, const std::string& text) {
 
 void writePreview(AtomicFile& file, const Image& image, float ev) {
   const auto provenance = image.attributes.find("bnvpl.provenance");
-  const PixelBox box = image.dataWindow.value_or(PixelBox{0, 0, image.width, image.height});
+  const PixelBox box = dataWindowOf(image);
   const std::vector<uint8_t> film =
       toSrgb8(*image.find("R"), *image.find("G"), *image.find("B"), ev);
   std::vector<uint8_t> rgb8;
@@ -253,8 +253,7 @@ void reportRender(const RenderResult& result, const Values& options, Summary& su
     means += line;
     summary.add(std::string("mean_") + name, value);
   }
-  const int width = result.image.width, height = result.image.height;
-  const PixelBox box = result.image.dataWindow.value_or(PixelBox{0, 0, width, height});
+  const PixelBox box = dataWindowOf(result.image);
   std::snprintf(line, sizeof line, "%d x %d pixels%s, %llu spp: %s W/(m2 sr)", box.x1 - box.x0,
                 box.y1 - box.y0, result.image.dataWindow ? " of the film" : "",
                 static_cast<unsigned long long>(options[kSppOption]), means.c_str());

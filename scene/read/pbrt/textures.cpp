@@ -147,21 +147,9 @@ std::optional<TextureUse> Textures::imageUse(const TextureEntity& t) {
   return use;
 }
 
-bool Textures::takesAlpha(const fs::path& file) {
-  const auto [known, isNew] = takesAlpha_.try_emplace(file, false);
-  if (isNew) {
-    try {
-      known->second = loadTexture(file, false, false).hasAlpha();
-    } catch (const InputError&) {  // addGreyableImage() tells why
-    }
-  }
-  return known->second;
-}
-
 uint32_t Textures::imagemap(const TextureEntity& t) {
   const std::optional<TextureUse> use = imageUse(t);
-  TextureExpression e = imageExpression(kNone, Channel::Rgb);
-  if (!t.isSpectrum) e.channel = takesAlpha(use->file) ? Channel::Alpha : Channel::Mean;
+  TextureExpression e = imageExpression(kNone, t.isSpectrum ? Channel::Rgb : Channel::Mean);
   const std::string wrap = t.params.text("wrap", "repeat");
   if (wrap == "clamp" || wrap == "black") {
     e.wrapU = e.wrapV = wrap == "clamp" ? Wrap::Clamp : Wrap::Black;
@@ -171,7 +159,7 @@ uint32_t Textures::imagemap(const TextureEntity& t) {
   e.value = Vec3{float(t.params.number("scale", 1.0))};
   e.invert = t.params.boolean("invert", false);
   e.uv = mapping(t);
-  return builder_.addGreyableImage(*use, e);
+  return builder_.addGreyableImage(*use, e, !t.isSpectrum);
 }
 
 UvTransform Textures::mapping(const TextureEntity& t) {

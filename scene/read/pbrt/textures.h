@@ -39,8 +39,6 @@ class Textures {
   const TextureEntity* find(const Param& p, bool isSpectrum);
   uint32_t make(const TextureEntity& t);
   uint32_t operand(const TextureEntity& t, const std::string& name, float otherwise);
-  // Whether pbrt takes the alpha of an image for a float texture, and not the mean of its colours.
-  bool takesAlpha(const fs::path& file);
   uint32_t imagemap(const TextureEntity& t);
   std::optional<TextureUse> imageUse(const TextureEntity& t);
   UvTransform mapping(const TextureEntity& t);
@@ -53,7 +51,6 @@ class Textures {
   Notes& notes_;
   SceneBuilder& builder_;
   std::map<const TextureEntity*, uint32_t> made_;
-  std::map<fs::path, bool> takesAlpha_;
   std::set<const TextureEntity*> masks_;  // read as plain masks, which need no expression
   std::set<const TextureEntity*> making_;
 };

@@ -23,8 +23,8 @@ constexpr auto kPhotonsOption = inTopic(
 constexpr auto kIrradianceErrorOption =
     inTopic(Topic::Speed, realOption("irradiance-error", "0.005", 0, 1, "",
                                      "less work is done if pilots predict this mean relative error "
-                                     "of the light in view that comes "
-                                     "from VPLs; 0: all work is done"));
+                                     "of the light in view that comes from VPLs; 0: all work is "
+                                     "done"));
 constexpr auto kOptions =
     optionTable(kPhotonsOption, kEmissionOption, kIrradianceErrorOption, kPathsOption,
                 kRadiusOption, kPathBouncesOption, kEmitPointsOption);

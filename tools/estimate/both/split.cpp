@@ -120,7 +120,7 @@ VplStatistics poolPilots(std::span<const uint32_t> wide, const Pilots& pilots,
 
 std::vector<VplStatistics> poolAllPilots(const VplTable& vpls, const Pilots& pilots) {
   const KdTree tree(vpls.position);
-  // A pilot that no photon of reached a VPL tells nothing about photons but their power.
+  // A pilot whose photons reached no VPL tells only their power.
   const double found = meanSample(pilots.byPhotons);
   const Samples anywhere{found > 0.0 ? found : pilots.photonPower, meanSample(pilots.byPaths)};
   std::vector<VplStatistics> statistics(vpls.size());

@@ -96,22 +96,18 @@ void warnOfOtherScenes(const CompareRequest& command, const Sides& s) {
   }
 }
 
-PixelBox windowOf(const Image& image) {
-  return image.dataWindow.value_or(PixelBox{0, 0, image.width, image.height});
-}
-
 // Crops count where all images have pixels; elsewhere they are black without being so.
 void leaveOutWhatCropsLack(const CompareRequest& command, Sides& s) {
   const PixelBox all{0, 0, s.imageB.width, s.imageB.height};
   PixelBox box = all;
   for (const Image* image : {&s.imageA, &s.imageB, s.halves ? &s.imageSecond : &s.imageB}) {
-    const PixelBox window = windowOf(*image);
+    const PixelBox window = dataWindowOf(*image);
     box = {std::max(box.x0, window.x0), std::max(box.y0, window.y0), std::min(box.x1, window.x1),
            std::min(box.y1, window.y1)};
   }
   if (box == all || s.imageA.width != s.imageB.width || s.imageA.height != s.imageB.height) return;
   std::vector<double>& weights = s.mask.weights;
-  weights.resize(s.imageB.pixelCount(), weights.empty() ? 1.0 : 0.0);
+  weights.resize(s.imageB.pixelCount(), 1.0);
   for (size_t i = 0; i < weights.size(); ++i) {
     const auto x = static_cast<int>(i % static_cast<size_t>(all.x1)),
                y = static_cast<int>(i / static_cast<size_t>(all.x1));
