@@ -7,11 +7,11 @@
 #include <numeric>
 
 #include "core/random.h"
+#include "core/random_streams.h"
 #include "spatial/cell_lists.h"
 #include "spatial/kd_tree.h"
 #include "spatial/local_density.h"
 #include "spatial/morton_order.h"
-#include "tools/common/files/streams.h"
 #include "tools/eliminate/eliminate.h"
 #include "tools/eliminate/elimination/conflict_graph.h"
 #include "tools/eliminate/elimination/greedy.h"
@@ -30,7 +30,7 @@ Cloud makeRoom(size_t count, bool uneven) {
   const Vec3 size(8.0f, 3.0f, 4.0f);
   Cloud cloud;
   for (size_t i = 0; i < count; ++i) {
-    Rng rng(streamKey(1, Stream::Plot), i);
+    Rng rng(streamKey(1, RandomStream::Plot), i);
     const float power = uneven ? 2.5f : 1.0f;
     const float u = std::pow(rng.next(), power), v = std::pow(rng.next(), power);
     const float face = rng.next() * 112.0f;  // position in the sum of the faces' areas

@@ -5,8 +5,8 @@
 #include <cstdlib>
 
 #include "core/parallel.h"
+#include "core/random_streams.h"
 #include "tests/support/pipeline.h"
-#include "tools/common/files/streams.h"
 #include "tools/render/gather/gather.h"
 #include "transport/camera.h"
 #include "transport/photon_walk.h"
@@ -60,7 +60,7 @@ void tracePhotons(benchmark::State& state) {
 std::vector<Ray> photonRays() {
   std::vector<Ray> rays;
   for (uint64_t photon = 0; rays.size() < 400000; ++photon) {
-    Rng rng(streamKey(3, Stream::Photons), photon);
+    Rng rng(streamKey(3, RandomStream::Photons), photon);
     const LightSet& lights = world().lights;
     float probability = 0.0f;
     const PhotonStart start = lights.emit(lights.pick(rng.next(), probability), rng);
@@ -79,7 +79,7 @@ std::vector<Ray> cameraRays() {
   std::vector<Ray> rays;
   const Scene& scene = world().scene;
   for (uint64_t path = 0; rays.size() < 400000; ++path) {
-    Rng rng(streamKey(3, Stream::PlaceCamera), path);
+    Rng rng(streamKey(3, RandomStream::PlaceCamera), path);
     const Point2 film = r2Sequence(path, 0.0, 0.0);
     rays.push_back(
         {scene.camera.position, cameraDirection(scene.camera, scene.film, film.x, film.y)});

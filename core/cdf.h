@@ -22,7 +22,7 @@ size_t findInCdf(std::span<const T> cdf, size_t begin, size_t end, float u) {
 
 // Rescales u from the interval of entry i to [0, 1), for reuse.
 template <typename T>
-void shareInCdf(std::span<const T> cdf, size_t i, float& u) {
+void remapInCdf(std::span<const T> cdf, size_t i, float& u) {
   const T low = i > 0 ? cdf[i - 1] : T{0}, width = cdf[i] - low;
   u = width > T{0} ? std::min(static_cast<float>((static_cast<T>(u) - low) / width), 0x1.fffffep-1f)
                    : 0.0f;
@@ -32,7 +32,7 @@ void shareInCdf(std::span<const T> cdf, size_t i, float& u) {
 template <typename T>
 size_t sampleCdf(std::span<const T> cdf, float& u) {
   const size_t i = findInCdf(cdf, 0, cdf.size() - 1, u);
-  shareInCdf(cdf, i, u);
+  remapInCdf(cdf, i, u);
   return i;
 }
 
@@ -55,7 +55,7 @@ size_t sampleCdf(std::span<const T> cdf, std::span<const uint32_t> guide, float&
       std::min(static_cast<size_t>(u * static_cast<float>(kGuideSteps)), kGuideSteps - 1);
   const size_t end = step + 1 < kGuideSteps ? guide[step + 1] : cdf.size() - 1;
   const size_t i = findInCdf(cdf, guide[step], end, u);
-  shareInCdf(cdf, i, u);
+  remapInCdf(cdf, i, u);
   return i;
 }
 
@@ -75,7 +75,7 @@ std::vector<T> makeCdf(const std::vector<double>& weights) {
 
 // Probability of an entry.
 template <typename T>
-T cdfShare(std::span<const T> cdf, size_t i) {
+T cdfProbability(std::span<const T> cdf, size_t i) {
   return cdf[i] - (i > 0 ? cdf[i - 1] : T{0});
 }
 

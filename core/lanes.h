@@ -38,7 +38,7 @@ F sineOf(F cosine) {
 }
 // Cosine of the difference of two angles, or 1 if the second is larger.
 template <typename F>
-F cosineOfLess(F cosine, F cosLess, F sinLess) {
+F cosSubClamped(F cosine, F cosLess, F sinLess) {
   const F turned = cosine * cosLess + sineOf(cosine) * sinLess;
   return selectAtLeast(cosine, cosLess, everyLane<F>(1.0f), turned);
 }

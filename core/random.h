@@ -39,9 +39,6 @@ constexpr Point2 r2Sequence(uint64_t index, double shiftX, double shiftY) {
   return {toUnitFloat(x), toUnitFloat(y)};
 }
 
-// Hash-based Owen scrambling of one coordinate in [0, 1), in 32-bit fixed point: the key and the
-// bits above it decide whether a bit is flipped (Laine & Karras 2011; constants of Vegdahl 2021,
-// "Building a better LK hash").
 constexpr uint32_t reverseBits(uint32_t x) {
   x = x >> 16 | x << 16;
   x = (x & 0xff00ff00u) >> 8 | (x & 0x00ff00ffu) << 8;
@@ -49,7 +46,10 @@ constexpr uint32_t reverseBits(uint32_t x) {
   x = (x & 0xccccccccu) >> 2 | (x & 0x33333333u) << 2;
   return (x & 0xaaaaaaaau) >> 1 | (x & 0x55555555u) << 1;
 }
-// The same for reversed bits: the most significant bit is the lowest.
+// Hash-based Owen scrambling of one coordinate in [0, 1), in 32-bit fixed point: the key and the
+// bits above it decide whether a bit is flipped (Laine & Karras 2011; constants of Vegdahl 2021,
+// "Building a better LK hash").
+// Here the bits are reversed: the most significant bit is the lowest.
 constexpr uint32_t owenScrambleReversed(uint32_t x, uint32_t key) {
   x ^= x * 0x3d20adeau;
   x += key;

@@ -70,7 +70,6 @@ inline Vec3 sampleCone(float u, float v, float cosHalfAngle) {
   const float r = std::sqrt(std::max(0.0f, 1.0f - z * z));
   return {r * std::cos(2.0f * kPi * v), r * std::sin(2.0f * kPi * v), z};
 }
-inline float pdfCone(float cosHalfAngle) { return 1.0f / (2.0f * kPi * (1.0f - cosHalfAngle)); }
 
 // cos^n lobe about +z; density (n + 1) / (2 pi) cos^n.
 inline Vec3 samplePowerCosine(float u, float v, float exponent) {

@@ -64,7 +64,7 @@ def errors(rows: Rows) -> Rows:
     for row in rows[1:]:
         views.setdefault(row[0], {})[row[head.index("VPLs")]] = row
     relmse, mean, time = (head.index(name) for name in ("relMSE", "mean ratio", "time, CPU s"))
-    table = [["view", *METHODS.values(), "mean ratio, ours", "CPU s"]]
+    table = [["view", *METHODS.values(), "mean / reference, ours", "CPU s, ours"]]
     for view, by in views.items():
         found = [without_error(by[method][relmse]) for method in METHODS]
         best = min(found, key=float)

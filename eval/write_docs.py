@@ -252,9 +252,9 @@ def write_summary(results: dict[str, Any]) -> None:
         (row["view"], row["method"]): row for row in results["results"] if row["part"] == "methods"
     }
     lines = [
-        "| scene, VPLs | from the light | random | blue noise, uniform (thesis) | **blue noise, "
+        "| scene, VPLs | instant radiosity | random | blue noise, uniform (thesis) | **blue noise, "
         "local (ours)** | "
-        "mean ratio, ours | CPU s |",
+        "mean / reference, ours | CPU s, ours |",
         "|---" * 7 + "|",
     ]
     scenes, table = settings.load()

@@ -23,6 +23,7 @@ import shlex
 import output_guard
 import stage_options
 import stages
+import tool_options
 
 # A stage uses all cores, so one runs at a time, whatever -j is. The same holds for shards, unless a
 # launcher starts them elsewhere.
@@ -130,6 +131,7 @@ def main() -> None:
             f"build {stages.name_of(scene)}: phony "
             f"{' '.join(image for image, _ in stages.images_in(scene, options))}",
         ]
+    tool_options.check(options)
     target = pathlib.Path(options.out) / "build.ninja"
     text = "\n".join(rows) + "\n"
     output_guard.make_folder(target.parent, "--out")

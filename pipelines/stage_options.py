@@ -164,7 +164,12 @@ def complete(options: argparse.Namespace) -> None:
 
 
 def view_list(text: str) -> list[str]:
-    return [check_path(view) for view in text.split(",") if view]
+    views = [check_path(view) for view in text.split(",") if view]
+    if not views:  # mostly an unset variable of a script
+        raise argparse.ArgumentTypeError(
+            f"{text!r} names no view; name .toml files, or leave the option out"
+        )
+    return views
 
 
 def views_of(options: argparse.Namespace) -> list[tuple[str, str]]:
@@ -221,7 +226,12 @@ def relative(path: pathlib.Path) -> str:
 
 
 def check_path(path: str) -> str:
-    """Refuses characters that are special to the shell, Make or ninja. Returns the path."""
+    """Refuses characters that are special to the shell, Make or ninja. Returns the path.
+
+    The tools would take a path that begins with - for an option.
+    """
+    if path.startswith("-"):
+        refuse(f"{path!r} begins with -, as options do; write ./{path}")
     found = re.search(r"[^\w/.,+@!-]", path)
     if found:
         character = "a space" if found[0] == " " else repr(found[0])

@@ -64,7 +64,8 @@ class ReachGrid {
     }
   }
 
-  // Calls fn(disk) for every point whose distance is below its radius, in a fixed order.
+  // Calls fn(disk) for every disk whose centre is nearer than its radius (a ball test), in a fixed
+  // order.
   template <typename Fn>
   static void forEachReaching(const Lookup& lookup, const Fn& fn) {
     for (uint32_t l = 0; l < lookup.size_; ++l) {

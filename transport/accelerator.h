@@ -35,9 +35,8 @@ struct Segment {
   Vec3 from, to;
 };
 
-// Owns the acceleration structure; the Scene must outlive it. Queries are thread-safe.
-// Alpha masks are honoured by every query.
-// Borrows the scene. Immutable and thread-safe.
+// Owns Embree's hierarchy and borrows the scene, which must outlive it. Immutable; queries are
+// thread-safe and honour alpha masks.
 class Accelerator {
  public:
   // Throws std::runtime_error when Embree cannot build.

@@ -51,11 +51,12 @@ class Bsdf {
   uint32_t frame(Vec3 shadingNormal, float turns = 0.0f);
   bool full() const { return count_ == kMaxLobes; }
 
-  // Fraction of the flux from wo that leaves through the rough lobes, 0..1, and whether it is taken
-  // to be the same for all wo. A Phong lobe's is that at normal incidence.
+  // Fraction of the flux from wo that leaves through the rough lobes, 0..1. A Phong lobe's is that
+  // at normal incidence.
   Vec3 roughAlbedo() const { return roughAlbedo_; }
   // The same for all lobes: the fraction of the flux from wo that is not absorbed.
   Vec3 albedo() const { return albedo_; }
+  // Whether roughAlbedo() is taken to be the same for all wo.
   bool albedoIsConstant() const { return albedoIsConstant_; }
   bool hasRough() const { return !isBlack(roughAlbedo_); }
   // The constant part of the rough group's BSDF, 1/sr, without the cosine that eval() includes, and

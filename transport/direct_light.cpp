@@ -9,7 +9,8 @@ namespace bnvpl {
 
 namespace {
 
-// Share of a hit found by the BSDF, against light sampling. `place`: -> where on the light it is.
+// MIS weight of emission that a BSDF ray hit, against light sampling. place() gives the point of
+// the light's unit square that it hit.
 template <typename Place>
 float hitWeight(const LightSet& lights, size_t light, float lightPdf, const Arrival& arrival,
                 const Place& place) {
@@ -30,7 +31,7 @@ float shadowRaysTo(const LightSet& lights, size_t light, LightChoice choice) {
   return static_cast<float>(kMaxLightsEach) * lights.pickProbability(light);
 }
 
-uint64_t lampOf(const LightSet& lights, size_t light, Vec3 towards) {
+uint64_t emitterOf(const LightSet& lights, size_t light, Vec3 towards) {
   const float density = lights.photonDensity(light, towards);
   const int step = density > 0.0f && std::isfinite(density) ? (std::ilogb(density) + 512) / 2 : 0;
   return uint64_t{light} << 9 | static_cast<uint64_t>(step);
@@ -39,11 +40,12 @@ uint64_t lampOf(const LightSet& lights, size_t light, Vec3 towards) {
 bool PhotonMis::sends(size_t light, Vec3 towards) const {
   if (!lights || !(photons * lights->pickProbability(light) > 0.0f)) return false;
   return !lamps || !lights->hittable(light) ||
-         std::ranges::binary_search(*lamps, lampOf(*lights, light, towards));
+         std::ranges::binary_search(*lamps, emitterOf(*lights, light, towards));
 }
 
 float PhotonMis::rayWeight(size_t light, Vec3 towards, float guided) const {
   if (!sends(light, towards)) return 1.0f;
+  if (emissionBalance > 0.0f) return emissionBalance / (guided + emissionBalance);
   if (!lights->hittable(light)) return 0.0f;
   return powerHeuristic(rays, photons * lights->pickProbability(light) * guided *
                                   lights->photonDensity(light, towards));
@@ -60,8 +62,8 @@ Vec3 emissionHit(const LightSet& lights, const SurfacePoint& hit, const Arrival&
   const Vec3 emitted = lights.emitted(hit, light);
   if (isBlack(emitted)) return {};
   const auto place = [&] { return lights.invertSample(light, hit); };
-  const float rayWeight = arrival.shared.rayWeight(light, -hit.wo, arrival.from, place);
-  const float pdf = lights.pdfEmitted(light, hit, arrival.from);
+  const float rayWeight = arrival.photons.rayWeight(light, -hit.wo, arrival.from, place);
+  const float pdf = lights.pdfDirect(light, hit, arrival.from);
   const Vec3 found = emitted * rayWeight * hitWeight(lights, light, pdf, arrival, place);
   if (arrival.groups) arrival.groups.add(lights.group(light), found);
   return found;
@@ -71,7 +73,7 @@ Vec3 emissionAtInfinity(const LightSet& lights, Vec3 direction, const Arrival& a
   Vec3 sum;
   lights.forEachAtInfinity(direction, [&](size_t light, Vec3 radiance, float pdf) {
     const auto place = [&] { return lights.invertSample(light, direction); };
-    const float rayWeight = arrival.shared.rayWeight(light, direction, arrival.from, place);
+    const float rayWeight = arrival.photons.rayWeight(light, direction, arrival.from, place);
     const Vec3 found = radiance * rayWeight * hitWeight(lights, light, pdf, arrival, place);
     sum += found;
     if (arrival.groups) arrival.groups.add(lights.group(light), found);

@@ -23,24 +23,30 @@ inline constexpr size_t kMaxLightsEach = 32;
 
 // Identifies the emitter of photons: a light, or, in an environment image, a region of similar
 // radiance such as the sun. Regions are classes of photon density, in steps of a factor of 4.
-uint64_t lampOf(const LightSet& lights, size_t light, Vec3 towards);
+uint64_t emitterOf(const LightSet& lights, size_t light, Vec3 towards);
 
-// MIS weights, by the power heuristic, of light through specular vertices that photons estimate,
-// too. Densities are rays per area of the receiver and photons per area of the emitter. Their ratio
-// is exact if the specular surfaces between are flat; otherwise the weights still sum to one.
+// MIS weights of rays for light that photons estimate, too.
+//
+// Caustics of the film: the power heuristic, for light through specular vertices. Densities are
+// rays per area of the receiver and photons per area of the emitter. Their ratio is exact if the
+// specular surfaces between are flat; otherwise the weights still sum to one.
+//
+// Flux of VPLs (emissionBalance > 0): the balance heuristic by the density g with which photons
+// start on the path, relative to emission by power. Photons weigh g / (g + emissionBalance).
 struct PhotonMis {
   const LightSet* lights = nullptr;  // null: there are no photons
   float rays = 0.0f;                 // BSDF rays per area, 1/unit^2
   float photons = 0.0f;              // number of photons from all lights
-  // Lamps (lampOf) that emit photons, ascending; null: all do. Rays alone estimate the others.
+  // Lamps (emitterOf) that emit photons, ascending; null: all do. Rays alone estimate the others.
   const std::vector<uint64_t>* lamps = nullptr;
   const EmissionGuide* guide = nullptr;  // density of the photons; null: by power
+  float emissionBalance = 0.0f;
   // Weight of rays that reach `from` from the direction `towards` a light. place() tells where on
   // the light: invertSample().
   template <typename Place>
   float rayWeight(size_t light, Vec3 towards, Vec3 from, const Place& place) const {
     if (!sends(light, towards)) return 1.0f;
-    if (!lights->hittable(light)) return 0.0f;
+    if (!lights->hittable(light) && !(emissionBalance > 0.0f)) return 0.0f;
     const float guided =
         guide && guide->guides()
             ? guide->density({static_cast<uint32_t>(light),
@@ -71,8 +77,8 @@ struct LightSampling {
   LearnedLight learned = {};
   LightChoice choice = LightChoice::One;
   PhotonMis photons = {};
-  GroupSink groups = {};      // receives the light by group
-  GroupSink partGroups = {};  // receives it again; of LightWithPart, the part
+  LightGroupSink groups = {};      // receives the light by group
+  LightGroupSink partGroups = {};  // receives it again; of LightWithPart, the part
 };
 
 // Where the random numbers of a vertex's shadow rays come from: independent ones, or the points of
@@ -162,8 +168,8 @@ struct Arrival {
   Vec3 from;             // origin of the ray
   LightChoice choice = LightChoice::One;  // choice at `from`, unless learned.strata is given
   LearnedLight learned = {};
-  PhotonMis shared = {};          // weights of light through specular vertices
-  GroupSink groups = {};          // receives the emission by group
+  PhotonMis photons = {};      // weights of light that photons estimate, too
+  LightGroupSink groups = {};  // receives the emission by group
 };
 // Emission that a ray hits, with its MIS weight: that of the surface, or, for a ray that leaves the
 // scene, that of the lights at infinity.

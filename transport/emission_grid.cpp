@@ -46,7 +46,7 @@ EmissionGrid::Cell EmissionGrid::cellOf(Barycentric at) const {
 }
 
 float EmissionGrid::densityOf(uint32_t row, uint32_t cell) const {
-  return cdfShare<float>(rows_, row) * cdfShare(cellsOf(row), cell) *
+  return cdfProbability<float>(rows_, row) * cdfProbability(cellsOf(row), cell) *
          (static_cast<float>(side_) * static_cast<float>(side_));
 }
 
@@ -74,8 +74,8 @@ Point2 EmissionGrid::invertSample(Barycentric at) const {
   const Cell c = cellOf(at);
   const Point2 within = invertTriangleSample(c.within);
   const std::span<const float> cells = cellsOf(c.row);
-  return {(c.cell > 0 ? cells[c.cell - 1] : 0.0f) + within.x * cdfShare(cells, c.cell),
-          (c.row > 0 ? rows_[c.row - 1] : 0.0f) + within.y * cdfShare<float>(rows_, c.row)};
+  return {(c.cell > 0 ? cells[c.cell - 1] : 0.0f) + within.x * cdfProbability(cells, c.cell),
+          (c.row > 0 ? rows_[c.row - 1] : 0.0f) + within.y * cdfProbability<float>(rows_, c.row)};
 }
 
 }  // namespace bnvpl

@@ -240,11 +240,9 @@ LearnedEmission learnEmission(const LightSet& lights, uint64_t photons, uint64_t
     out.useful.guided = double(now.targets.size()) / double(count);
     found.targets.insert(found.targets.end(), now.targets.begin(), now.targets.end());
     found.proxies.insert(found.proxies.end(), now.proxies.begin(), now.proxies.end());
-    const bool few = found.targets.size() < kFew;
-    // The final guide is by the target alone.
-    out.guide = few && round + 1 == kRounds ? EmissionGuide(lights)
-                                            : guideBy(lights, few ? found.proxies : found.targets,
-                                                      guides, count * (round + 1));
+    out.enough = found.targets.size() >= kFew;
+    out.guide =
+        guideBy(lights, out.enough ? found.targets : found.proxies, guides, count * (round + 1));
     if (!out.guide.guides() && found.targets.size() >= kEnough) break;
   }
   if (!out.guide.guides()) out.useful.guided = 0.0;

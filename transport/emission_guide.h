@@ -85,12 +85,14 @@ struct UsefulPhotons {
 };
 
 struct LearnedEmission {
-  EmissionGuide guide;
+  EmissionGuide guide;  // by the target; by the proxy while too few photons have reached the target
   UsefulPhotons useful = {};
+  bool enough = false;  // whether enough have
 };
 
-// Traces `photons` pilot photons in several rounds, each guided by those before it. The photons'
-// flux is that of `photons` = 1, by power. Returns the same for any number of threads.
+// Traces `photons` pilot photons in several rounds, each guided by those before it. `estimate`
+// gets each photon as LightSet::emit() makes it, with the flux of its light's only photon. Returns
+// the same for any number of threads.
 LearnedEmission learnEmission(const LightSet& lights, uint64_t photons, uint64_t key,
                               const PilotEstimator& estimate, const ProgressFn& progress);
 

@@ -11,17 +11,19 @@
 namespace bnvpl {
 
 // Where an estimator adds light by group, and the factor that its light has there.
-struct GroupSink {
+struct LightGroupSink {
   Vec3* sums = nullptr;  // one for each group; null: none are wanted
   Vec3 factor{1.0f};
 
   explicit operator bool() const { return sums != nullptr; }
   void add(uint32_t group, Vec3 light) const { sums[group] += factor * light; }
-  GroupSink times(Vec3 f) const { return {sums, factor * f}; }
-  GroupSink times(float f) const { return {sums, factor * f}; }
+  LightGroupSink times(Vec3 f) const { return {sums, factor * f}; }
+  LightGroupSink times(float f) const { return {sums, factor * f}; }
 };
 
 // Adds to `sums`; to nothing if there are none.
-inline GroupSink sinkTo(std::span<Vec3> sums) { return {sums.empty() ? nullptr : sums.data()}; }
+inline LightGroupSink sinkTo(std::span<Vec3> sums) {
+  return {sums.empty() ? nullptr : sums.data()};
+}
 
 }  // namespace bnvpl

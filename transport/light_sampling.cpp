@@ -64,8 +64,8 @@ bool LightSet::sampleArea(const Light& light, Vec3 at, float u, float v, LightSa
 // the shares of single texels of a fine image would be below a float's precision.
 float LightSet::texelPdf(const Light& light, size_t x, uint32_t y) const {
   const EnvironmentImage& image = scene_.environments[light.spec.image];
-  return static_cast<float>(cdfShare<double>(light.rowCdf, y)) *
-         cdfShare(light.cdfOfRow(y, image.width), x) / texelSolidAngle(image, y);
+  return static_cast<float>(cdfProbability<double>(light.rowCdf, y)) *
+         cdfProbability(light.cdfOfRow(y, image.width), x) / texelSolidAngle(image, y);
 }
 
 // Samples a direction towards a light at infinity.
@@ -164,7 +164,7 @@ Point2 LightSet::invertSample(size_t index, const SurfacePoint& hit) const {
   const Point2 within =
       light.grids.empty() ? invertTriangleSample(at) : light.grids[i].invertSample(at);
   const float begin = i > 0 ? light.cdf[i - 1] : 0.0f;
-  return {begin + within.x * cdfShare<float>(light.cdf, i), within.y};
+  return {begin + within.x * cdfProbability<float>(light.cdf, i), within.y};
 }
 
 Point2 LightSet::invertSample(size_t index, Vec3 direction) const {
@@ -182,8 +182,8 @@ Point2 LightSet::invertSample(size_t index, Vec3 direction) const {
   const float down = std::clamp((top - direction.y) / bandHeight(y, image.height), 0.0f, 1.0f);
   const std::span<const float> row = light.cdfOfRow(y, image.width);
   const double above = y > 0 ? light.rowCdf[y - 1] : 0.0;
-  return {(x > 0 ? row[x - 1] : 0.0f) + (u - float(x)) * cdfShare(row, x),
-          static_cast<float>(above + double{down} * cdfShare<double>(light.rowCdf, y))};
+  return {(x > 0 ? row[x - 1] : 0.0f) + (u - float(x)) * cdfProbability(row, x),
+          static_cast<float>(above + double{down} * cdfProbability<double>(light.rowCdf, y))};
 }
 
 LightSet::Extent LightSet::extent(size_t index) const {
@@ -199,8 +199,6 @@ LightSet::Extent LightSet::extent(size_t index) const {
           light.spec.position, 1};
 }
 
-// Photons from infinity start on the faces of the scene's box that face the light, uniformly in
-// projected area, so that none is wasted on empty space beside an elongated scene.
 namespace {
 
 // Projected areas of a box's faces along direction d.
@@ -211,6 +209,8 @@ Vec3 facesAcross(Vec3 extent, Vec3 d) {
 
 }  // namespace
 
+// Photons from infinity start on the faces of the scene's box that face the light, uniformly in
+// projected area, so that none is wasted on empty space beside an elongated scene.
 PhotonStart LightSet::emitFromInfinity(const Light& light, const PrimarySample& at) const {
   Vec3 radiance;
   float pdf = 0.0f;
@@ -246,8 +246,15 @@ PrimarySample LightSet::invertEmission(size_t index, Point2 place, Vec3 towards,
     at[3] = direction.y;
     return at;
   }
-  if (light.spec.type != LightType::Directional && light.spec.type != LightType::Environment)
-    return at;
+  if (light.spec.type == LightType::Point) {
+    const Point2 direction = invertSphereSample(-towards);
+    return {direction.x, direction.y, 0.0f, 0.0f};
+  }
+  if (light.spec.type == LightType::Spot) {
+    const Vec3 d = Frame(light.spec.direction).toLocal(-towards);
+    const Point2 direction = invertNarrowConeSample(d, versine(light.spec.coneRad));
+    return {direction.x, direction.y, 0.0f, 0.0f};
+  }
   // The face of the box by which the ray enters it.
   const Vec3 e = scene_.bounds.extent(), face = facesAcross(e, towards);
   size_t axis = 0;

@@ -50,6 +50,12 @@ inline Vec3 sampleNarrowCone(float u, float v, float coneVersine) {
   const float w = u * coneVersine, r = std::sqrt(w * (2.0f - w));
   return {r * std::cos(2.0f * kPi * v), r * std::sin(2.0f * kPi * v), 1.0f - w};
 }
+// The inverse of sampleNarrowCone() for a direction about +z.
+inline Point2 invertNarrowConeSample(Vec3 d, float coneVersine) {
+  const float turns = std::atan2(d.y, d.x) / (2.0f * kPi);
+  return {std::min(1.0f, versineBetween(d, {0, 0, 1}) / coneVersine),
+          turns < 0.0f ? turns + 1.0f : turns};
+}
 inline float pdfNarrowCone(float coneVersine) { return 1.0f / (2.0f * kPi * coneVersine); }
 inline bool inNarrowCone(Vec3 direction, Vec3 axis, float coneVersine) {
   return versineBetween(direction, axis) <= coneVersine;

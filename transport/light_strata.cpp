@@ -19,14 +19,14 @@ LightStrata::LightStrata(const LightSet& lights, size_t maxStrata) : cells_(ligh
     if (cells_[i].share > 0.0f) order_.push_back(i);
   }
   if (2 * order_.size() <= maxStrata) {
-    cutUp(lights, maxStrata);
+    divideLights(lights, maxStrata);
   } else {
-    putTogether(lights, maxStrata);
+    groupLights(lights, maxStrata);
   }
 }
 
 // Each light has a stratum; divisible lights get the remaining ones in proportion to power.
-void LightStrata::cutUp(const LightSet& lights, size_t maxStrata) {
+void LightStrata::divideLights(const LightSet& lights, size_t maxStrata) {
   std::vector<LightSet::Extent> extents;
   double divisible = 0.0;
   for (const uint32_t i : order_) {
@@ -62,7 +62,7 @@ void LightStrata::add(uint32_t light, const LightSet::Extent& extent, size_t par
 
 // Groups neighbours along a Morton curve until they have an equal part of the power. Lights at
 // infinity have a stratum each.
-void LightStrata::putTogether(const LightSet& lights, size_t maxStrata) {
+void LightStrata::groupLights(const LightSet& lights, size_t maxStrata) {
   std::vector<uint32_t> local, own = order_;
   std::vector<Vec3> centres;
   order_.clear();
@@ -125,7 +125,7 @@ uint32_t LightStrata::stratumOf(const LightPlace& place) const {
 float StrataDistribution::probability(uint32_t stratum) const {
   const auto it = std::lower_bound(strata.begin(), strata.end(), stratum);
   return it != strata.end() && *it == stratum
-             ? cdfShare(cdf, static_cast<size_t>(it - strata.begin()))
+             ? cdfProbability(cdf, static_cast<size_t>(it - strata.begin()))
              : 0.0f;
 }
 
@@ -148,7 +148,8 @@ StrataValues distributionOf(std::span<const float> values) {
 StrataValues meanOf(std::span<const StrataValues> distributions, size_t strata) {
   std::vector<float> sum(strata);
   for (const StrataValues& d : distributions)
-    for (size_t k = 0; k < d.strata.size(); ++k) sum[d.strata[k]] += cdfShare<float>(d.values, k);
+    for (size_t k = 0; k < d.strata.size(); ++k)
+      sum[d.strata[k]] += cdfProbability<float>(d.values, k);
   return distributionOf(sum);
 }
 

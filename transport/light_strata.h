@@ -48,8 +48,8 @@ class LightStrata {
     uint32_t cell;        // index among the cells of its light, if it has only one
     float share;
   };
-  void cutUp(const LightSet& lights, size_t most);
-  void putTogether(const LightSet& lights, size_t most);
+  void divideLights(const LightSet& lights, size_t most);
+  void groupLights(const LightSet& lights, size_t most);
   void add(uint32_t light, const LightSet::Extent& extent, size_t parts);
 
   std::vector<Cells> cells_;

@@ -61,7 +61,7 @@ void LightSet::setPickProbabilities(std::vector<double> weights) {
   for (float& upTo : pickCdf_)
     upTo = static_cast<float>(std::round(double{upTo} * kSteps) / kSteps);
   for (size_t i = 0; i < lights_.size(); ++i)
-    lights_[i].pickProbability = cdfShare<float>(pickCdf_, i);
+    lights_[i].pickProbability = cdfProbability<float>(pickCdf_, i);
 }
 
 LightSet LightSet::onlyUnhittable() const {
@@ -241,7 +241,7 @@ Vec3 LightSet::emitted(const SurfacePoint& hit, size_t& light) const {
   return scene_.emissionAt(scene_.materials[hit.material], hit.u, hit.v);
 }
 
-float LightSet::pdfEmitted(size_t light, const SurfacePoint& hit, Vec3 from) const {
+float LightSet::pdfDirect(size_t light, const SurfacePoint& hit, Vec3 from) const {
   const Light& l = lights_[light];
   const float cosine = dot(hit.ng, hit.wo);
   if (!(cosine > 0.0f)) return 0.0f;
@@ -257,7 +257,7 @@ float LightSet::densityOver(const Light& light, size_t i, float ofGrid) const {
   const uint32_t t = light.triangles[i];
   const float area = 0.5f * length(cross(scene_.corner(t, 1) - scene_.corner(t, 0),
                                          scene_.corner(t, 2) - scene_.corner(t, 0)));
-  return cdfShare<float>(light.cdf, i) * light.areaTotal / area * ofGrid;
+  return cdfProbability<float>(light.cdf, i) * light.areaTotal / area * ofGrid;
 }
 
 }  // namespace bnvpl

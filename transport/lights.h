@@ -69,7 +69,7 @@ class LightSet {
   // Radiance that an emissive surface emits towards wo. `light` is set to its index, or kNone.
   Vec3 emitted(const SurfacePoint& hit, size_t& light) const;
   // Density, 1/sr, with which sampleDirect() samples this hit from `from`.
-  float pdfEmitted(size_t light, const SurfacePoint& hit, Vec3 from) const;
+  float pdfDirect(size_t light, const SurfacePoint& hit, Vec3 from) const;
 
   // The inverse of sampleDirect(): the point of the unit square that it maps to a hit on an
   // emissive surface, or to the direction towards a light at infinity.

@@ -8,20 +8,21 @@ namespace bnvpl {
 
 unsigned addOutgoingRadiance(const Accelerator& accel, const LightSet& lights, const Bsdf& start,
                              Vec3 throughput, PathLength length,
-                             const SpatialLightSampler* lightSampler, Rng& rng, Vec3& first,
-                             Vec3& later, const OutgoingGroups& groups) {
+                             const SpatialLightSampler* lightSampler, Rng& rng, Vec3& direct,
+                             Vec3& indirect, const OutgoingGroups& groups,
+                             const PhotonMis& photons) {
   SpecularPath vertex;
   std::optional<Bsdf> scattering;
   LearnedStrata strata;
   for (unsigned bounce = 0;; ++bounce) {
     const Bsdf& bsdf = bounce == 0 ? start : scattering.emplace(accel.scene(), vertex.hit);
-    Vec3& sum = bounce == 0 ? first : later;
-    const GroupSink& sink = bounce == 0 ? groups.first : groups.later;
+    Vec3& sum = bounce == 0 ? direct : indirect;
+    const LightGroupSink& sink = bounce == 0 ? groups.direct : groups.indirect;
     if (lightSampler) strata = lightSampler->at(bsdf.point().position, bsdf.point().ng);
-    sum +=
-        throughput * directLight(accel, lights, Reflected{bsdf},
-                                 {learnedBy(strata), LightChoice::One, {}, sink.times(throughput)},
-                                 BsdfRays{bsdf}, LightNumbers(rng));
+    sum += throughput *
+           directLight(accel, lights, Reflected{bsdf},
+                       {learnedBy(strata), LightChoice::One, photons, sink.times(throughput)},
+                       BsdfRays{bsdf}, LightNumbers(rng));
 
     const float survive = bounce == 0 ? 1.0f : bsdf.reflectance();
     if (rng.next() >= survive) return bounce + 1;
@@ -31,15 +32,15 @@ unsigned addOutgoingRadiance(const Accelerator& accel, const LightSet& lights, c
                        next))
       return bounce + 1;
     throughput *= scattered.weight * (1.0f / survive);
-    const Arrival arrival{scattered.pdf, bsdf.point().position, LightChoice::One,
-                          learnedBy(strata)};
-    vertex =
-        followSpecularPath(accel, lights, next.origin, next.direction, arrival, rng,
-                           {nullptr, lightSampler, sink.times(throughput),
-                            length.firstBounce ? GroupSink{} : groups.later.times(throughput)});
+    const Arrival arrival{scattered.pdf, bsdf.point().position, LightChoice::One, learnedBy(strata),
+                          photons};
+    vertex = followSpecularPath(
+        accel, lights, next.origin, next.direction, arrival, rng,
+        {nullptr, lightSampler, sink.times(throughput),
+         length.directOnly ? LightGroupSink{} : groups.indirect.times(throughput)});
     sum += throughput * vertex.emissionFirst;
-    if (length.firstBounce) return bounce + 1;
-    later += throughput * vertex.emissionLater;
+    if (length.directOnly) return bounce + 1;
+    indirect += throughput * vertex.emissionLater;
     if (bounce == length.maxBounces || !vertex.rough) return bounce + 1;
     throughput *= vertex.throughput;
   }

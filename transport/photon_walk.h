@@ -34,7 +34,7 @@ class PhotonWalk {
   const PhotonFate& fate() const { return fate_; }
   // Whether its first scattering was by a delta lobe. If no ray can hit the light, no path from the
   // camera finds this contribution.
-  bool beganAtPerfectMirror() const { return beganAtPerfectMirror_; }
+  bool firstScatteringIsDelta() const { return beganAtPerfectMirror_; }
   Rng& rng() { return rng_; }
   // One of several photons that replace this one, each with a share of its flux. The fate of each
   // includes the path so far.

@@ -5,11 +5,12 @@
 
 namespace bnvpl {
 
+inline constexpr float kMinRelief = 0.05f;  // cosine of shading normals with ng
+
 // Sets the tangent of a hit, and perturbs the shading normals of surface and clearcoat by the
 // material's reliefs. The hit must be complete otherwise, and its triangle have texture coordinates
 // at all corners. Shading normals keep a cosine with ng of at least kMinRelief, which bounds the
 // shading factor of photons. Reliefs refer to the front: seen from behind, bumps are dents.
-inline constexpr float kMinRelief = 0.05f;
 void applyRelief(const Scene& scene, const Triangle& triangle, SurfacePoint& hit);
 
 }  // namespace bnvpl

@@ -22,7 +22,7 @@ SpecularPath followSpecularPath(const Accelerator& accel, const LightSet& lights
   end.hit = first;
   end.throughput = Vec3{1.0f};
   Arrival arrival = start;
-  arrival.shared = {};
+  if (!(start.photons.emissionBalance > 0.0f)) arrival.photons = {};
   while (true) {
     const bool straight = end.specularBounces == 0;
     Vec3& met = straight ? end.emissionFirst : end.emissionLater;
@@ -56,7 +56,7 @@ SpecularPath followSpecularPath(const Accelerator& accel, const LightSet& lights
                                        : LearnedStrata{};
       end.emissionLater +=
           end.throughput * directLight(accel, lights, Reflected{bsdf, LobeGroup::Specular},
-                                       {learnedBy(strata), LightChoice::One, start.shared,
+                                       {learnedBy(strata), LightChoice::One, start.photons,
                                         specularLights.emissionLater.times(end.throughput)},
                                        BsdfRays{bsdf, 1.0f, LobeGroup::Specular},
                                        LightNumbers(rng));
@@ -67,7 +67,7 @@ SpecularPath followSpecularPath(const Accelerator& accel, const LightSet& lights
                        next))
       return end;
     end.throughput *= sample.weight;
-    arrival = {sample.pdf, end.hit.position, LightChoice::One, learnedBy(strata), start.shared};
+    arrival = {sample.pdf, end.hit.position, LightChoice::One, learnedBy(strata), start.photons};
     direction = next.direction;
     accel.closestHit(next.origin, direction, end.hit);
   }

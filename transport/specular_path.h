@@ -13,7 +13,7 @@ class SpatialLightSampler;
 struct SpecularLightSampling {
   const LearnedStrata* first = nullptr;         // for the first specular vertex
   const SpatialLightSampler* others = nullptr;  // for the others, and for the first without `first`
-  GroupSink emissionFirst = {}, emissionLater = {};  // receive the members of SpecularPath
+  LightGroupSink emissionFirst = {}, emissionLater = {};  // receive the members of SpecularPath
 };
 
 struct SpecularPath {
@@ -27,8 +27,8 @@ struct SpecularPath {
   float firstDistance = INFINITY;  // distance of the first hit along the ray
 };
 
-// `arrival` describes the first segment; its `shared` holds for the segments behind specular
-// vertices.
+// `arrival` describes the first segment; its `photons` hold for the segments behind specular
+// vertices, and with an emissionBalance for the first, too.
 SpecularPath followSpecularPath(const Accelerator& accel, const LightSet& lights, Vec3 origin,
                                 Vec3 direction, const Arrival& arrival, Rng& rng,
                                 const SpecularLightSampling& specularLights = {});

@@ -25,7 +25,7 @@ struct VplLights {
   std::vector<Vec3> groupIntensity;  // `groups` intensities for each entry
 
   // Adds light of entry i by group. `transfer`: light over intensity.
-  void addByGroup(size_t i, Vec3 transfer, const GroupSink& sink) const {
+  void addByGroup(size_t i, Vec3 transfer, const LightGroupSink& sink) const {
     const Vec3 factor = sink.factor * transfer;
     for (uint32_t g = 0; g < groups; ++g) sink.sums[g] += factor * groupIntensity[i * groups + g];
   }
@@ -39,7 +39,7 @@ struct VplLights {
   }
 };
 
-// `clamp` is in units of each VPL's radius (r_max), or of `oneRadius` if that is not 0. `groups`:
+// `clamp` is in units of each VPL's radius, or of `oneRadius` if that is not 0. `groups`:
 // the table's flux by light group.
 VplLights makeVplLights(const VplTable& lit, const Accelerator& accel, float clamp,
                         VplKind kind = {}, const VplGroups& groups = {}, float oneRadius = 0.0f);
@@ -51,7 +51,8 @@ struct VplTransfer {
   bool sampled = false;    // a mean of samples (spherical_light.h)
 };
 
-// The same for kinds that are not seen from their centre. `d`: towards the VPL.
+// unoccludedTransfer() of kinds whose light comes from a sphere. `d`: from the receiver to its
+// centre.
 bool integratedTransfer(const VplLights& vpls, size_t i, const Bsdf& bsdf, Vec3 d,
                         VplTransfer& out);
 
@@ -73,8 +74,8 @@ inline bool unoccludedTransfer(const VplLights& vpls, size_t i, const Bsdf& bsdf
   return true;
 }
 
-// The same without the receiver's BSDF, and without branches, so that the compiler can vectorise it
-// over receivers.
+// unoccludedTransfer() without the receiver's BSDF, and without branches, so that the compiler can
+// vectorise it over receivers.
 struct GeometryTerm {
   float value;      // cosines * falloff, 1/m2; undefined unless it contributes
   float clampLoss;  // the same as in VplTransfer

@@ -40,7 +40,7 @@ struct LambertEmission {
   template <typename F>
   static F maxEmitted(F cosine, F cosHalfAngle, F sinHalfAngle) {
     const F zero = everyLane<F>(0.0f);
-    const F nearest = cosineOfLess(cosine, cosHalfAngle, sinHalfAngle);
+    const F nearest = cosSubClamped(cosine, cosHalfAngle, sinHalfAngle);
     return selectAtLeast(zero, cosHalfAngle, everyLane<F>(1.0f), larger(nearest, zero));
   }
   // `cosine` is the least of the direction with the axis of the cone.
@@ -48,10 +48,9 @@ struct LambertEmission {
     return larger(cosine * cosHalfAngle - sineOf(cosine) * sinHalfAngle, 0.0f) *
            (cosHalfAngle > 0.0f ? 1.0f : 0.0f);
   }
-  // `halfAngle` is about half the angle that the cluster subtends; `sinHalfAngle` is that of the
-  // cone.
-  static float expectedEmitted(float cosine, float halfAngle, float sinHalfAngle) {
-    return halfAngle + sinHalfAngle + cosine;
+  // `subtended` is about half the angle that the cluster subtends, `sinHalfAngle` that of its cone.
+  static float expectedEmitted(float cosine, float subtended, float sinHalfAngle) {
+    return subtended + sinHalfAngle + cosine;
   }
 };
 
@@ -158,7 +157,7 @@ inline constexpr std::string_view kLightKinds{VplKinds::choices.data(), VplKinds
 enum class VplKind : uint8_t {};  // an index into VplKinds
 
 // Throws std::logic_error if no kind has that name.
-inline VplKind lightKindNamed(std::string_view name) {
+inline VplKind vplKindNamed(std::string_view name) {
   for (size_t i = 0; i < VplKinds::names.size(); ++i) {
     if (VplKinds::names[i] == name) return VplKind(i);
   }

@@ -37,8 +37,8 @@ def look(scene: str, options: argparse.Namespace, *more: str) -> Any:
 def pixels_of(seen: dict[str, Any], options: argparse.Namespace) -> int:
     """Pixels of the largest film."""
     words = stage_options.words_of(options.render_flags, "--render-flags")
-    if "--size" in words[:-1]:
-        films = [words[words.index("--size") + 1]]
+    if given := re.search(r"--size[= ](\S+)", " ".join(words)):
+        films = [given[1]]
     elif options.views:
         films = [
             look(options.scene, options, "--view", view)["cameras"][0]["film"]

@@ -27,6 +27,7 @@ import record  # noqa: E402
 import stage_options  # noqa: E402
 import stages  # noqa: E402
 import task as task_program  # noqa: E402
+import tool_options  # noqa: E402
 
 KINDS = ("place", "eliminate", "estimate", "render", "merge")
 SECONDS_TO_SAVE = 60  # time before the limit at which a task begins to save its checkpoint
@@ -114,6 +115,7 @@ def arguments() -> argparse.Namespace:
         p.error(f"--retries {options.retries} is not 0 or more")
     stage_options.complete(options)
     stage_options.check_scene(options.scene)
+    tool_options.check(options, must_run=False)
     return options
 
 

@@ -96,6 +96,8 @@ COLUMNS = {
 
 def standard_columns(stage: str) -> list[Column]:
     """The columns that every file of the stage has, in file order."""
+    if stage not in STAGES:
+        raise ValueError(f"stage {stage!r} is none of {', '.join(STAGES)}")
     last = STAGES.index(stage)
     return [column for column in COLUMNS.values() if STAGES.index(column.since) <= last]
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 import tempfile
 from collections.abc import Mapping
 from dataclasses import replace
@@ -14,7 +15,7 @@ import numpy.typing as npt
 from .layout import StrPath
 from .tools import run, scene_hash
 from .vpl_read import read_vpl
-from .vpl_write import save
+from .vpl_write import contents, save
 from .vpls import Vpls, complete
 
 TWO_SQRT3 = 2 * math.sqrt(3)  # share of the surface = 2 sqrt(3) radius^2
@@ -24,12 +25,16 @@ def share_radii(position: npt.ArrayLike, normal: npt.ArrayLike) -> npt.NDArray[n
     """Radius of each VPL by the share of the surface that it stands for, as vpl-place gives it.
 
     The share follows from the distance to the 20th nearest VPL on a compatible surface. It is
-    2 sqrt(3) radius^2. vpl-eliminate computes it: it keeps all VPLs here.
+    2 sqrt(3) radius^2. vpl-eliminate computes it: it keeps all VPLs here. Raises ValueError, with
+    column and row, where a value is invalid.
     """
     candidates = complete({"position": position, "normal": normal})
+    content = b"".join(contents(candidates))
+    if len(candidates) == 0:
+        return np.zeros(0, np.float32)
     with tempfile.TemporaryDirectory(prefix="bnvpl.") as folder:
         before, after = Path(folder) / "before.vpl", Path(folder) / "after.vpl"
-        save(before, candidates)
+        before.write_bytes(content)
         run(
             "vpl-eliminate",
             before,
@@ -70,7 +75,10 @@ def write_vpl(
     where a value is invalid.
     """
     if not isinstance(vpls, Vpls):
-        vpls = make_vpls(vpls, scene)
+        try:
+            vpls = make_vpls(vpls, scene)
+        except ValueError as error:
+            raise ValueError(f"{os.fspath(path)}: not written: {error}") from None
     elif scene is not None:
         vpls = replace(vpls, scene_hash=scene_hash(scene))
     save(path, vpls)

@@ -11,6 +11,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 
 @dataclass(frozen=True)
 class Option:
@@ -59,6 +61,10 @@ def _texts(name: str, option: Option, value: Any) -> list[str]:
         return ["on" if value else "off"]
     if isinstance(value, Mapping):
         value = [f"{key}={_text(of)}" for key, of in value.items()]
+    if isinstance(value, np.ndarray):
+        if value.ndim > 1:
+            raise TypeError(f"{name} is an array of {value.ndim} dimensions, not of one")
+        value = value.tolist() if value.ndim == 0 else list(value)
     if not isinstance(value, list | tuple):
         return [_text(value)]
     texts = [_text(v) for v in value]

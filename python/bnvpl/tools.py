@@ -22,12 +22,12 @@ CHECKOUT_BIN = Path(__file__).resolve().parents[2] / "build/release/bin"
 
 
 class ToolError(RuntimeError):
-    """A tool failed: its exit code, its message and the command that ran."""
+    """A tool failed: its exit code, its message, the command that ran, and what it printed."""
 
-    def __init__(self, code: int, message: str, command: list[str]) -> None:
+    def __init__(self, code: int, message: str, command: list[str], text: str = "") -> None:
         tool = Path(command[0]).name
         super().__init__(f"{tool}: {message}" if message else f"{tool}: exit code {code}")
-        self.code, self.message, self.command = code, message, command
+        self.code, self.message, self.command, self.text = code, message, command, text
 
 
 class ToolWarning(UserWarning):
@@ -81,6 +81,11 @@ def _execute(
         return code if code >= 0 else 128 - code, stdout.read(), lines
 
 
+def _reasons(text: str) -> list[str]:
+    """Lines of stdout, the last of which tells why a comparison failed; JSON has no such line."""
+    return [""] if text.startswith("{") else text.rstrip().split("\n")
+
+
 def run(
     tool: str,
     *arguments: StrPath,
@@ -94,7 +99,8 @@ def run(
     dicts repeat it or join it with commas. Inputs may have keywords too: scene=, vpls=. A keyword
     that is not in the tool's --help-json is a TypeError.
     Warnings of the tool are Python's, of class ToolWarning. With estimate=True the result is the
-    need of time and memory. Raises ToolError if the tool fails.
+    need of time and memory. Where the tool only prints, as with methods=True, the result is
+    {"text": what it printed}. Raises ToolError if the tool fails.
     """
     executable = find_tool(tool)
     command = str(arguments[0]) if tool == "vpl-inspect" and arguments else ""
@@ -107,14 +113,14 @@ def run(
         words = [executable, *words_of(tool, spec, arguments, options)]
         words += ["--stats", str(stats), *shown]
         code, text, lines = _execute(words, tool, progress)
-        error = lines.pop() if code and lines else text.strip()  # the last line is the error
+        error = (lines or _reasons(text)).pop() if code else ""  # the last line is the error
         for line in lines:
             warnings.warn(f"{tool}: {line}", ToolWarning, stacklevel=2)
         if code:
-            raise ToolError(code, error, words)
+            raise ToolError(code, error, words, text)
         if options.get("estimate"):
             stats.write_text(text)
-        result: dict[str, Any] = json.loads(stats.read_text()) if stats.exists() else {}
+        result: dict[str, Any] = json.loads(stats.read_text()) if stats.exists() else {"text": text}
         return result
 
 

@@ -8,13 +8,15 @@ import itertools
 import json
 import math
 import os
+import re
 from pathlib import Path
 
 from . import columns as spec
 from . import layout as at
 from .columns import COLUMNS, STAGES, Array
 from .layout import Entry, Header, StrPath
-from .vpls import Vpls, typed
+from .vpl_target import named, replaceable
+from .vpls import Vpls, rows_of, typed
 
 
 _partials = itertools.count()  # numbers of the process's unfinished files
@@ -41,7 +43,7 @@ def _columns_in_order(vpls: Vpls) -> dict[str, Array]:
         raise ValueError(f"column {later[0]} is beyond stage {vpls.stage}")
     if len(extras) > spec.MAX_EXTRA_COLUMNS:
         raise ValueError(f"more than {spec.MAX_EXTRA_COLUMNS} columns of methods")
-    count = len(vpls)
+    count = len(rows_of("position", vpls.columns["position"]))
     return {name: typed(name, vpls.columns[name], count) for name in standard + extras}
 
 
@@ -80,6 +82,8 @@ def _header(vpls: Vpls, pieces: list[bytes]) -> bytes:
             raise ValueError(f"{what} is negative or not finite")
     if not 0 <= vpls.indirect_share <= 1:
         raise ValueError("share of indirect light is not 0 to 1")
+    if not re.fullmatch(r"[0-9a-fA-F]{16}", vpls.scene_hash):
+        raise ValueError(f"scene_hash {vpls.scene_hash!r} is not 16 hex digits")
     header = Header(
         at.MAGIC,
         at.VERSION,
@@ -100,32 +104,14 @@ def _header(vpls: Vpls, pieces: list[bytes]) -> bytes:
     return header.pack()
 
 
-def _refuse_other_file(path: Path) -> None:
-    """A file that is no .vpl may be somebody's work."""
-    if path.is_file() and path.stat().st_size:
-        with path.open("rb") as file:
-            if file.read(len(at.MAGIC)) != at.MAGIC:
-                raise FileExistsError(
-                    f"{path}: exists and is no .vpl file; name another file, or remove it"
-                )
+def contents(vpls: Vpls) -> list[bytes]:
+    """The bytes of a file, in pieces. Raises ValueError where something is invalid."""
+    pieces = _pieces(vpls)
+    return [_header(vpls, pieces), *pieces]
 
 
-def save(path: StrPath, vpls: Vpls) -> None:
-    """Writes VPLs, whole or not at all, as the tools do: through links, with the old file's mode.
-
-    Raises ValueError where something is invalid, and FileExistsError or PermissionError for a file
-    that is no .vpl or is read-only.
-    """
-    target = Path(path)
-    try:
-        pieces = _pieces(vpls)
-        header = _header(vpls, pieces)
-    except ValueError as error:
-        raise ValueError(f"{target}: not written: {error}") from None
-    _refuse_other_file(target)
-    place = Path(os.path.realpath(target))
-    if place.exists() and not os.access(place, os.W_OK):
-        raise PermissionError(f"{target}: is read-only; name another file")
+def _replace(place: Path, content: list[bytes]) -> None:
+    """Puts a whole file in the place of another, with its mode."""
     # The tools remove files of such a name that no process locks, as left by a killed one.
     partial = place.with_name(f"{place.name}.partial-{os.getpid()}-{next(_partials)}")
     try:
@@ -134,9 +120,28 @@ def save(path: StrPath, vpls: Vpls) -> None:
                 fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
                 if place.exists():
                     os.fchmod(file.fileno(), place.stat().st_mode & 0o7777)
-            file.writelines([header, *pieces])
+            file.writelines(content)
             file.flush()
             os.fsync(file.fileno())
             os.replace(partial, place)
     finally:
         partial.unlink(missing_ok=True)
+
+
+def save(path: StrPath, vpls: Vpls) -> None:
+    """Writes VPLs, whole or not at all, as the tools do: through links, with the old file's mode.
+
+    Raises ValueError where something is invalid, and OSError with the file's name where it cannot
+    be written or is none that these VPLs may replace: see vpl_target.py.
+    """
+    target = Path(path)
+    try:
+        content = contents(vpls)
+    except ValueError as error:
+        raise ValueError(f"{target}: not written: {error}") from None
+    place = replaceable(target, vpls.stage)
+    try:
+        _replace(place, content)
+    except OSError as error:
+        cure = "the old file, if any, is unchanged"
+        raise named(error, f"{target}: write failed", cure) from error

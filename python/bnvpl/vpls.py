@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import copy
+import difflib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any, overload
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -69,6 +70,17 @@ class Vpls:
     emit_normal = _Attribute()
     first_bounce_flux = _Attribute()
 
+    if not TYPE_CHECKING:  # checkers know the attributes, and would take any name
+
+        def __setattr__(self, name: str, value: Any) -> None:
+            """Refuses a name that no file would keep."""
+            known = [*self.__dataclass_fields__, *COLUMNS]
+            if name not in known:
+                near = difflib.get_close_matches(name, known, 1)
+                cure = f"did you mean {near[0]}?" if near else 'write vpls["mine.heat"] = ...'
+                raise AttributeError(f"VPLs have no attribute {name}; {cure}")
+            object.__setattr__(self, name, value)
+
     def __len__(self) -> int:
         return len(self.position)
 
@@ -96,6 +108,19 @@ class Vpls:
         )
 
 
+def rows_of(name: str, values: npt.ArrayLike) -> Array:
+    """The values as an array of numbers, whose first axis is that of the rows."""
+    try:
+        array = np.asarray(values)
+    except ValueError:  # lists of different lengths
+        raise ValueError(f"column {name} has rows of different lengths") from None
+    if array.dtype.kind not in "biuf":
+        raise ValueError(f"column {name} has values that are no real numbers")
+    if array.ndim == 0:
+        raise ValueError(f"column {name} is one value, not a row for each VPL")
+    return array
+
+
 def complete(given: Mapping[str, npt.ArrayLike]) -> Vpls:
     """VPLs of some columns; the others of their stage get values that say "unknown".
 
@@ -104,7 +129,7 @@ def complete(given: Mapping[str, npt.ArrayLike]) -> Vpls:
     chooses samples by it, and sums nothing of it. VPLs shine from their positions unless emission
     points are given.
     """
-    columns = {name: np.asarray(values) for name, values in given.items()}
+    columns = {name: rows_of(name, values) for name, values in given.items()}
     stage = "lit" if "flux" in columns else "eliminated" if "radius" in columns else "candidates"
     needed = ("position", "normal") if stage == "candidates" else ("position", "normal", "radius")
     for name in needed:
@@ -127,7 +152,7 @@ def complete(given: Mapping[str, npt.ArrayLike]) -> Vpls:
 
 def typed(name: str, values: npt.ArrayLike, count: int) -> Array:
     """The values as a file stores them: type, shape and order of a column of `count` rows."""
-    array = np.asarray(values)
+    array = rows_of(name, values)
     column = COLUMNS.get(name)
     if column is None:
         kind = {"f": "<f4", "u": "<u8" if array.dtype.itemsize > 4 else "<u4"}

@@ -6,6 +6,8 @@ test_foreign.py BIN       # folder of the executables
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from support import GOLDEN, ROOT, SCENE, TestFolder, main
@@ -94,6 +96,32 @@ class Foreign(TestFolder):
         with self.assertRaisesRegex(ValueError, "column flux has the shape"):
             columns = {"position": one, "normal": one + [0, 0, 1], "radius": one[0, :1] + 1}
             bnvpl.write_vpl(self.folder / "x.vpl", columns | {"flux": one[0, :1]})
+
+    def test_messages_name_the_file_and_the_column(self) -> None:
+        """Files within the package are nobody's business."""
+        file, one, down = self.folder / "x.vpl", [[0.3, 0.5, 0.3]], [[0, -1, 0]]
+        cases: list[tuple[Any, Any, str]] = [
+            (one, [[0, -2, 0]], "column normal, row 0: not of unit length"),
+            ([], [], r"column position has the shape \(0,\), expected \(0, 3\)"),
+            ("abc", down, "column position has values that are no real numbers"),
+            (1, down, "column position is one value, not a row for each VPL"),
+            ([[1, 2], [3]], down, "column position has rows of different lengths"),
+            (one * 2, down, r"column normal has the shape \(1, 3\), expected \(2, 3\)"),
+        ]
+        for position, normal, problem in cases:
+            columns: dict[str, Any] = {"position": position, "normal": normal, "flux": one}
+            with self.assertRaisesRegex(ValueError, rf"\A{file}: not written: {problem}\Z"):
+                bnvpl.write_vpl(file, columns)
+            with self.assertRaisesRegex(ValueError, rf"\A{problem}\Z"):
+                bnvpl.share_radii(position, normal)
+            self.assertFalse(file.exists())
+
+    def test_no_vpls_at_all(self) -> None:
+        none = np.zeros((0, 3))
+        columns = {"position": none, "normal": none, "flux": none}
+        bnvpl.write_vpl(self.folder / "x.vpl", columns, SCENE)
+        bnvpl.run("vpl-inspect", "check", self.folder / "x.vpl")
+        self.assertEqual(bnvpl.read_vpl(self.folder / "x.vpl").flux.shape, (0, 3))
 
 
 if __name__ == "__main__":

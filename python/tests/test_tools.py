@@ -130,7 +130,17 @@ class Running(TestFiles):
         self.assertGreater(bnvpl.run("vpl-inspect", "compare", *files)["compare"]["relmse"], 0)
         with self.assertRaises(bnvpl.ToolError) as caught:
             bnvpl.run("vpl-inspect", "compare", *files, max_relmse=1e-9)
-        self.assertEqual(caught.exception.code, 5)
+        error = caught.exception
+        self.assertEqual(error.code, 5)
+        self.assertRegex(error.message, r"\ADIFFERENT: relMSE \S+ exceeds the limit 1e-09\Z")
+        self.assertIn("SMAPE", error.text)
+        with self.assertRaises(bnvpl.ToolError) as caught:
+            bnvpl.run("vpl-inspect", "compare", *files, max_relmse=1e-9, json=True)
+        self.assertEqual(str(caught.exception), "vpl-inspect: exit code 5")
+
+    def test_what_a_tool_only_prints(self) -> None:
+        self.assertIn("tilecuts", bnvpl.run("vpl-render", methods=True)["text"])
+        self.assertRegex(bnvpl.run("vpl-render", version=True)["text"], r"\Avpl-render [\d.]+")
 
     def test_warnings_of_tools_are_warnings(self) -> None:
         scene = self.folder / "odd.obj"
@@ -167,6 +177,9 @@ class Keywords(unittest.TestCase):
         defined = {"A": "b", "C": Path("d")}
         self.assertEqual(self.words(define=defined), "--define A=b --define C=d")
         self.assertEqual(self.words(quiet=True, estimate=False, png=None), "--quiet")
+        self.assertEqual(self.words(size=np.array([8, 6]), spp=np.array(3)), "--size 8x6 --spp 3")
+        with self.assertRaisesRegex(TypeError, "size is an array of 2 dimensions, not of one"):
+            self.words(size=np.array([[8, 6]]))
         with self.assertRaisesRegex(TypeError, "quiet is a flag: True or False, not 3"):
             self.words(quiet=3)
         with self.assertRaisesRegex(TypeError, r"seed has one value, not \[1, 2\]"):

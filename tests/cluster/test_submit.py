@@ -75,7 +75,7 @@ class SubmitTest(SlurmTest):
         self.assertIn("is up to date", task.stdout)
 
     def test_what_fails_stops_what_comes_after_it_and_is_made_by_the_next_submission(self) -> None:
-        self.submit("--shards", "2", "--estimate-flags=--photon-count 3")
+        self.submit("--shards", "2", "--estimate-flags=--photons 3")
         jobs = self.jobs()
         self.assertFalse(jobs["estimate"]["well"])
         self.assertFalse(jobs["render"]["well"])
@@ -207,6 +207,10 @@ class SubmitTest(SlurmTest):
             "--shards",
             "estimate=4,render=4",
         )
+        self.assertEqual(asked("--render-flags=--size=99x9"), asked("--render-flags=--size 99x9"))
+        self.assertNotEqual(
+            asked("--render-flags=--size=9000x9000"), asked("--render-flags=--size=99x9")
+        )
         for stage in ("place", "eliminate", "estimate", "render", "merge-render"):
             self.assertGreater(large[stage][0], small[stage][0], stage)
         self.assertGreater(large["eliminate"][0], 15000)  # 100M candidates need 15 GiB
@@ -227,10 +231,17 @@ class SubmitTest(SlurmTest):
             (["--at-once", "0"], "--at-once 0"),
             (["--out", "a b"], "'a b' contains a space"),
             (["--retries", "-1"], "--retries -1"),
+            (["--spp", "1.5"], "--spp '1.5' is not a whole number"),
+            (["--memory=1G", "--time=9", "--vpls=0"], "--vpls '0' is out of range"),
+            (["--render-flags=--siz 3x3"], "--siz is no option of vpl-render; did you mean"),
         ):
             done = self.submit(*more)
             self.assertNotEqual(done.returncode, 0)
             self.assertIn(problem, done.stdout)
+        limits = ["--memory", "1G", "--time", "9", "--dry-run", "--bin", "nowhere"]
+        self.assertEqual(self.submit(*limits).returncode, 0)  # only nodes may have the tools
+        for text, problem in (("many", "is not a whole number"), ("1e999", "is out of range")):
+            self.assertIn(f"'{text}' {problem}", self.submit(*limits, "--photons", text).stdout)
         (self.folder / "slurm/sbatch").unlink()
         self.environment["PATH"] = f"{self.folder}/slurm"
         self.assertIn("there is no sbatch here", self.submit().stdout)

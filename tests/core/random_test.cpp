@@ -7,7 +7,7 @@
 #include <set>
 #include <vector>
 
-#include "tools/common/files/streams.h"
+#include "core/random_streams.h"
 
 namespace bnvpl {
 namespace {
@@ -19,7 +19,7 @@ TEST(Random, UnitFloatNeverReachesOne) {
 }
 
 TEST(Random, DependsOnKeyIndexAndDimensionOnly) {
-  Rng a(streamKey(1, Stream::Photons), 5), b(streamKey(1, Stream::Photons), 5);
+  Rng a(streamKey(1, RandomStream::Photons), 5), b(streamKey(1, RandomStream::Photons), 5);
   for (int i = 0; i < 100; ++i) EXPECT_EQ(a.next(), b.next());
   EXPECT_EQ(random64(3, 4, 5), random64(3, 4, 5));
   std::set<uint64_t> seen;
@@ -36,10 +36,11 @@ TEST(Random, DependsOnKeyIndexAndDimensionOnly) {
 TEST(Random, StreamsAndSeedsShareNoKey) {
   std::set<uint64_t> keys;
   for (uint64_t seed = 0; seed < 1000; ++seed) {
-    for (const Stream s :
-         {Stream::PlaceCamera, Stream::PlaceLight, Stream::Eliminate, Stream::Photons,
-          Stream::PixelSamples, Stream::LightTree, Stream::Plot, Stream::AreaEstimate,
-          Stream::LightTracer, Stream::FilmPoints, Stream::VplPaths}) {
+    for (const RandomStream s :
+         {RandomStream::PlaceCamera, RandomStream::PlaceLight, RandomStream::Eliminate,
+          RandomStream::Photons, RandomStream::PixelSamples, RandomStream::LightTree,
+          RandomStream::Plot, RandomStream::AreaEstimate, RandomStream::LightTracer,
+          RandomStream::FilmPoints, RandomStream::VplPaths}) {
       keys.insert(streamKey(seed, s));
     }
   }
@@ -109,7 +110,7 @@ TEST(Random, ConsecutiveNumbersFillTheSquareEvenly) {
   constexpr int kSide = 16, kDraws = 256 * 400;
   std::vector<int> cells(size_t{kSide} * kSide);
   for (int i = 0; i < kDraws; ++i) {
-    Rng rng(streamKey(7, Stream::PixelSamples), uint64_t(i));
+    Rng rng(streamKey(7, RandomStream::PixelSamples), uint64_t(i));
     const auto x = size_t(rng.next() * kSide), y = size_t(rng.next() * kSide);
     ++cells[y * kSide + x];
   }

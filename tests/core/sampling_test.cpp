@@ -10,7 +10,7 @@
 
 #include "core/cdf.h"
 #include "core/random.h"
-#include "tools/common/files/streams.h"
+#include "core/random_streams.h"
 
 namespace bnvpl {
 namespace {
@@ -31,7 +31,7 @@ using Density = std::function<double(double)>;
 void expectFollows(const Warp& warp, const Density& pdf, double zLow, double zHigh) {
   constexpr int kBands = 20, kDraws = 160000;
   std::vector<int> bands(kBands), sectors(8);
-  Rng rng(streamKey(1, Stream::PixelSamples), 0);
+  Rng rng(streamKey(1, RandomStream::PixelSamples), 0);
   for (int i = 0; i < kDraws; ++i) {
     const float u = rng.next(), v = rng.next();
     const Vec3 d = warp(u, v);
@@ -96,7 +96,7 @@ TEST(Sampling, Sphere) {
 TEST(Sampling, Cone) {
   for (const float cosHalf : {0.99f, 0.5f, 0.0f, -0.7f}) {
     const Density pdf = [&](double z) {
-      return z >= double{cosHalf} ? double{pdfCone(cosHalf)} : 0.0;
+      return z >= double{cosHalf} ? 1.0 / (2.0 * double{kPi} * (1.0 - double{cosHalf})) : 0.0;
     };
     EXPECT_NEAR(overSphere(pdf), 1.0, 2e-3) << cosHalf;
     expectFollows([&](float u, float v) { return sampleCone(u, v, cosHalf); }, pdf, double{cosHalf},

@@ -26,8 +26,8 @@ inline VplTable tableOf(const Cloud& cloud) {
 }
 
 inline KeptRows keepRowsOf(const Cloud& cloud, const Given& options) {
-  const EliminateResult kept = eliminate(tableOf(cloud), resolve(eliminateSpec(), options));
-  return {kept.table.id, kept.table.radius, kept.rMax, kept.area};
+  const VplTable kept = eliminate(tableOf(cloud), resolve(eliminateSpec(), options));
+  return {kept.id, kept.radius, kept.rMax, kept.areaEstimate};
 }
 
 inline const char* const kDensities[] = {"uniform", "local"};

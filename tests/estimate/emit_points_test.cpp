@@ -62,12 +62,11 @@ TEST(EmitPoints, MergeLikeTheWhole) {
   }
 }
 
-// Weights of added hits are scaled by the given share: 3/4 of 2.5 competes with 1.5 in full.
-TEST(EmitPoints, OfOthersAreScaledByTheirShare) {
+// Hits of both ways to estimate compete by their light: 2.5 with 1.5.
+TEST(EmitPoints, OfOthersCompeteByTheirLight) {
   EmitPoints points = raced(3, 4);
-  points.add(raced(0, 3, 8), std::vector<double>(kDraws, 0.75));
-  const double expected = 1.5 / (1.5 + 0.75 * 2.5);
-  EXPECT_NEAR(sharesOf(points)[3], expected, 4.0 * std::sqrt(0.25 / kDraws));
+  points.add(raced(0, 3, 8).winners());
+  EXPECT_NEAR(sharesOf(points)[3], 1.5 / (1.5 + 2.5), 4.0 * std::sqrt(0.25 / kDraws));
 }
 
 TEST(EmitPoints, WithoutLightAreThePositionOfTheVpl) {

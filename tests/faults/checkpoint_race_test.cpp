@@ -22,7 +22,7 @@ TEST(SharedCheckpoint, MayBeReplacedOrRemovedAsItIsOpened) {
   std::string small, large;
   for (std::string* bytes : {&small, &large}) {
     Checkpoint checkpoint(options, run);
-    checkpoint.resume().save(std::string(bytes == &small ? 10 : 100000, 's'));
+    checkpoint.controls().save(std::string(bytes == &small ? 10 : 100000, 's'));
     std::ifstream in(options.file, std::ios::binary);
     bytes->assign(std::istreambuf_iterator<char>(in), {});
   }
@@ -37,7 +37,7 @@ TEST(SharedCheckpoint, MayBeReplacedOrRemovedAsItIsOpened) {
   int resumed = 0;
   for (int i = 0; i < 3000; ++i) {
     try {
-      const std::string state = Checkpoint(options, run).resume().state;
+      const std::string state = Checkpoint(options, run).controls().state;
       EXPECT_TRUE(state.empty() || state.size() == 10 || state.size() == 100000);
       resumed += state.empty() ? 0 : 1;
     } catch (const std::exception& e) {

@@ -3,8 +3,8 @@
 
 #include <set>
 
+#include "core/random_streams.h"
 #include "tests/support/pipeline.h"
-#include "tools/common/files/streams.h"
 #include "tools/estimate/photon_shares.h"
 #include "tools/render/film/film.h"
 
@@ -14,7 +14,7 @@ namespace {
 constexpr uint64_t kMaxPhotons = uint64_t{1} << 36;  // maximum of vpl-estimate --photons
 
 TEST(Counts, PhotonsBeyond32BitsHaveStreamsOfTheirOwn) {
-  const uint64_t key = streamKey(1, Stream::Photons);
+  const uint64_t key = streamKey(1, RandomStream::Photons);
   std::set<std::pair<float, float>> seen;
   size_t drawn = 0;
   for (uint64_t high = 0; high < 64; ++high) {

@@ -28,12 +28,9 @@ class Programs(unittest.TestCase):
         self.addCleanup(holder.cleanup)
         self.folder = Path(holder.name)
         # The project's path may hold a space, which neither Make nor the scripts can handle.
-        for name, target in (
-            ("pipelines", SOURCE / "pipelines"),
-            ("scenes", SOURCE / "scenes"),
-            ("bin", BIN),
-        ):
-            (self.folder / name).symlink_to(target)
+        for target in (SOURCE / "pipelines", SOURCE / "scenes"):
+            (self.folder / target.name).symlink_to(target)
+        (self.folder / "bin").symlink_to(BIN)
         self.scene = "scenes/test/one-bounce.toml"
         (self.folder / "notes").write_text("somebody's\n")
 
@@ -73,15 +70,8 @@ class Programs(unittest.TestCase):
         return [sys.executable, str(SOURCE / "eval/scaling/farm.py"), *words]
 
     def make(self, *words: str) -> list[str]:
-        return [
-            "make",
-            "-f",
-            "pipelines/Makefile",
-            "BIN=bin",
-            f"SCENE={self.scene}",
-            *SMALL,
-            *words,
-        ]
+        given = ["BIN=bin", f"SCENE={self.scene}", *SMALL, *words]
+        return ["make", "-f", "pipelines/Makefile", *given]
 
 
 class Snakefile(unittest.TestCase):
@@ -89,7 +79,7 @@ class Snakefile(unittest.TestCase):
         """Snakemake is not installed everywhere, so that its own test may be skipped."""
         text = (SOURCE / "pipelines/Snakefile").read_text()
         sys.path.insert(0, str(SOURCE / "pipelines"))
-        used = set(re.findall(r"\b(stages|stage_options)\.(\w+)", text))
+        used = set(re.findall(r"\b(stages|stage_options|tool_options)\.(\w+)", text))
         self.assertGreater(len(used), 4)
         for module, name in used:
             found = importlib.import_module(module)
@@ -179,6 +169,131 @@ class Values(Programs):
             self.assertIn("Nothing to be done", self.call(*self.make(*more)).stdout)
             self.assertEqual(self.call(*self.make(*more, "clean")).returncode, 0)
             self.assertFalse((self.folder / out / "image.exr").exists())
+
+    def test_views_that_are_none(self) -> None:
+        for option in ("--views", "--place-views"):
+            for text in ("", ",", ",,"):
+                self.refused(
+                    self.script("generate_ninja.py", self.scene, f"{option}={text}"),
+                    f"{option}: '{text}' names no view",
+                )
+
+    def test_paths_that_look_like_options(self) -> None:
+        for name in ("OUT", "SCENE"):
+            self.refused(self.make("-n", f"{name}=-x"), f"{name}='-x' begins with -", "write ./-x")
+        self.refused(self.script("generate_ninja.py", self.scene, "--out=-x"), "write ./-x")
+        self.assertEqual(self.call(*self.make("OUT=./-x", "./-x/candidates.vpl")).returncode, 0)
+        self.assertTrue((self.folder / "-x/candidates.vpl").exists())
+
+
+class ToolOptions(Programs):
+    """What the tools would refuse only when they run."""
+
+    def test_counts_and_seeds(self) -> None:
+        for option, text, problem in (
+            ("--candidates", "foo", "is not a whole number such as 3000, 3k or 10M"),
+            ("--vpls", "-5", "is out of range: 1 to"),
+            ("--photons", "1.5", "is not a whole number"),
+            ("--photons", "9T", "is not a whole number"),
+            ("--spp", "0", "is out of range: 1 to"),
+            ("--seed", "x", "is not a whole number"),
+            ("--define", "DIR", "is not NAME=VALUE"),
+        ):
+            self.refused(
+                self.script("generate_ninja.py", self.scene, f"{option}={text}"),
+                f"{option} '{text}' {problem}",
+            )
+
+    def test_flags_of_a_stage(self) -> None:
+        for stage, words, problem in (
+            ("render", "--siz 3x3", "--siz is no option of vpl-render; did you mean --size?"),
+            ("render", "--size=3", "--size '3' is not WIDTHxHEIGHT"),
+            ("render", "--gather al", "--gather 'al' is none of its choices; did you mean all?"),
+            ("render", "--time", "--time needs a value: DURATION"),
+            ("render", "--time --quiet", "--time needs a value: DURATION"),
+            ("render", "--time 2", "--time '2' is not a duration"),
+            ("render", "--clamp -1", "--clamp '-1' is out of range"),
+            ("estimate", "-z 3", "-z is no option of vpl-estimate; see vpl-estimate --help"),
+            ("place", "more", "'more' is neither an option of vpl-place nor the value of one"),
+            ("eliminate", "--uniform-share x", "--uniform-share 'x' is not a number"),
+        ):
+            self.refused(
+                self.script("generate_ninja.py", self.scene, f"--{stage}-flags={words}"),
+                f"--{stage}-flags: {problem}",
+            )
+
+    def test_what_the_tools_take(self) -> None:
+        flags = "--size=8x6 --exposure -2 --layers N,Z --define A=b --quiet --split .5 --max-cut 1K"
+        counts = ["--candidates=1.5k", "--photons=1e5", "--vpls=1K", "--spp=", "--seed=3"]
+        words = [*counts, f"--render-flags={flags}", "--define=A=b=c", "--quality=final"]
+        done = self.call(*self.script("generate_ninja.py", self.scene, *words))
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+
+    def test_folders_without_tools(self) -> None:
+        for folder, problem in (("/nope", "is missing"), ("broken", "does not run here")):
+            broken = self.folder / "broken/vpl-place"
+            broken.parent.mkdir(exist_ok=True)
+            broken.touch()
+            self.refused(
+                self.script("generate_ninja.py", self.scene, "--bin", folder),
+                f"{folder}/vpl-place: {problem}; build the project first, or pass --bin",
+            )
+
+
+class Make(Programs):
+    def test_variables_that_nothing_reads(self) -> None:
+        for word, cure in (
+            ("QUALTIY=final", "did you mean QUALITY?"),
+            ("PHOTON=40M", "did you mean PHOTONS?"),
+            ("spp=3", "did you mean SPP?"),
+            ("THREADS=4", "use SCENE OUT"),
+            ("SPONZA_DIR=/data", "DEFINES='SPONZA_DIR=...' for a scene"),
+        ):
+            name = word.partition("=")[0]
+            self.refused(self.make("-n", word), f"{name} is no variable of this Makefile; ", cure)
+        for words in (["SHELL=/bin/bash"], ["CC=gcc", "CFLAGS=-O2"], ["QUALITY=x", "VPLS.x=9"]):
+            self.assertEqual(self.call(*self.make("-n", *words)).returncode, 0, words)
+
+    def test_variables_of_a_makefile_that_calls_this_one(self) -> None:
+        (self.folder / "outer").write_text(f"all:\n\t@$(MAKE) -n {' '.join(self.make()[1:])}\n")
+        for word, code in (("PROJECT=film", 0), ("THREADS=4", 0), ("PHOTON=9", 2)):
+            self.assertEqual(self.call("make", "-f", "outer", word).returncode, code, word)
+
+    def test_a_file_where_the_folder_is_to_be(self) -> None:
+        for out in ("notes", "notes/below/it"):
+            self.refused(self.make(f"OUT={out}"), f"OUT='{out}': notes is no folder; choose")
+
+    def test_clean_keeps_what_the_tools_would_not_replace(self) -> None:
+        out = self.folder / "out"
+        out.mkdir()
+        own = {name: f"{name} of somebody" for name in ("image.png", "eliminate.d", "place.shard")}
+        for name, text in own.items():
+            (out / name).write_text(text)
+
+        def left() -> dict[str, str]:
+            os.mkfifo(out / "render.checkpoint")  # clean does not wait for its bytes
+            self.assertEqual(self.call(*self.make("OUT=out", "clean")).returncode, 0)
+            (out / "render.checkpoint").unlink()
+            return {path.name: path.read_text() for path in out.rglob("*")}
+
+        for replaced in (False, True):
+            if replaced:  # after a run that went well
+                (out / "image.png").unlink()
+                self.assertEqual(self.call(*self.make("OUT=out")).returncode, 0)
+                (out / "image.png").write_text(own["image.png"])
+            done = self.call(*self.make("OUT=out", "SPP=2"))
+            self.assertIn("out/image.png: is not a PNG picture of vpl-render", done.stderr)
+            self.assertTrue((out / "lit.vpl").exists())
+            self.assertEqual(left(), own)
+
+    def test_clean_removes_what_a_run_left(self) -> None:
+        """This holds for shards of other counts and for a stage whose later run has failed."""
+        for shards in ("2", "render=3", "1"):
+            self.assertEqual(self.call(*self.make("OUT=out", f"SHARDS={shards}")).returncode, 0)
+        self.assertNotEqual(self.call(*self.make("OUT=out", "SPP=x")).returncode, 0)
+        (self.folder / "out/render.checkpoint").write_bytes(b"\x89VPLCKP\n")
+        self.assertEqual(self.call(*self.make("OUT=out", "clean")).returncode, 0)
+        self.assertEqual(list((self.folder / "out").iterdir()), [])
 
 
 class Files(Programs):

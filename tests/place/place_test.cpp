@@ -36,10 +36,10 @@ TEST(Place, ShardsEndWithEnoughOfTheirPathsForAllTogether) {
     EXPECT_TRUE(records.emplace(std::pair(work, unit), bytes).second) << "twice: " << unit;
   };
   for (uint64_t i = 0; i < 5; ++i) {
-    Resume resume;
-    resume.shard = {i, i + 1, 5};
-    resume.sink = &sink;
-    placeShard({world.accel, world.lights, views}, options, 0.0, resume);
+    WorkControls controls;
+    controls.shard = {i, i + 1, 5};
+    controls.sink = &sink;
+    placeShard({world.accel, world.lights, views}, options, 0.0, controls);
   }
   ShardSource source;
   source.record = [&](std::string_view work, uint64_t unit) -> std::optional<std::string> {

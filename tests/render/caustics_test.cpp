@@ -81,7 +81,7 @@ TEST(Caustics, VplsKnowTheLightBehindNearSpecularLobes) {
   const Bsdf bsdf(cover, Vec3(1.0f));
   const auto gathers = [&](const char* compensate) {
     size_t points = 0;
-    const PointGatherFn count = [&](const Bsdf&, unsigned, Rng&, const GroupSink&) {
+    const PointGatherFn count = [&](const Bsdf&, unsigned, Rng&, const LightGroupSink&) {
       ++points;
       return Gathered{};
     };
@@ -113,7 +113,7 @@ TEST(Caustics, RaysFollowTheLobesThatVplsDoNotCover) {
     if (world.scene.materials[wall.material].name == "Red") seen.ng = seen.ns = seen.wo = way;
   }
   const Bsdf bsdf(seen, Vec3(1.0f));
-  const PointGatherFn nothing = [](const Bsdf&, unsigned, Rng&, const GroupSink&) {
+  const PointGatherFn nothing = [](const Bsdf&, unsigned, Rng&, const LightGroupSink&) {
     return Gathered{};
   };
   const NearFieldRays rays = nearField(world, lit, "near-field", nothing);
@@ -199,7 +199,7 @@ TEST(Caustics, EmittersWithTooFewPhotonsAreLeftToRays) {
     const Caustics caustics(world.accel, world.lights, {}, photons, 8.0f, 0, 3, 0, {});
     EXPECT_GT(caustics.stats().lamps, 0u);
     EXPECT_EQ(caustics.stats().sparseLamps == caustics.stats().lamps, left) << photons;
-    return caustics.shared(seen, world.scene.camera.position).rayWeight(lamp, {0, 1, 0}, 1.0f);
+    return caustics.photonMis(seen, world.scene.camera.position).rayWeight(lamp, {0, 1, 0}, 1.0f);
   };
   EXPECT_EQ(share(16, true), 1.0f);
   EXPECT_LT(share(400000, false), 1.0f);

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "core/random_streams.h"
 #include "tests/render/random_lights.h"
-#include "tools/common/files/streams.h"
 #include "tools/render/gather/receiver_tree.h"
 #include "tools/render/light_tree/normal_cone.h"
 #include "transport/spherical_light.h"
@@ -25,7 +25,7 @@ float sumOf(Vec3 v) { return v.x + v.y + v.z; }
 
 // The normals of a tilted wall, whose cosine with themselves may round to less than 1.
 TEST(NormalCones, OfEqualNormalsHaveNoAngle) {
-  Rng rng(streamKey(4, Stream::Plot), 0);
+  Rng rng(streamKey(4, RandomStream::Plot), 0);
   for (int i = 0; i < 1000; ++i) {
     const float u = rng.next(), v = rng.next();
     const Vec3 normal = sampleSphere(u, v);
@@ -35,7 +35,7 @@ TEST(NormalCones, OfEqualNormalsHaveNoAngle) {
 }
 
 TEST(NormalCones, HoldWhatTheyAreMergedFrom) {
-  Rng rng(streamKey(5, Stream::Plot), 0);
+  Rng rng(streamKey(5, RandomStream::Plot), 0);
   for (int i = 0; i < 2000; ++i) {
     const float u = rng.next(), v = rng.next(), spread = std::pow(10.0f, -6.0f * rng.next());
     const Vec3 axis = sampleSphere(u, v);
@@ -56,9 +56,9 @@ TEST(NormalCones, HoldWhatTheyAreMergedFrom) {
 class ClusterBounds : public testing::TestWithParam<std::tuple<std::string_view, bool>> {
  protected:
   ClusterBounds() : scene(withMaterial(std::get<1>(GetParam()))) {
-    Rng rng(streamKey(9, Stream::Plot), 0);
+    Rng rng(streamKey(9, RandomStream::Plot), 0);
     vpls = lightsAbout(24, rng);
-    vpls.kind = lightKindNamed(std::get<0>(GetParam()));
+    vpls.kind = vplKindNamed(std::get<0>(GetParam()));
     tree = buildLightTree(vpls, 1);
     for (int k = 0; k < 150; ++k) points.push_back(pointIn(rng));
     for (const SurfacePoint& p : points) {

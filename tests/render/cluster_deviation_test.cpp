@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "core/random.h"
+#include "core/random_streams.h"
 #include "core/sampling.h"
-#include "tools/common/files/streams.h"
 
 namespace bnvpl::test {
 namespace {
@@ -37,7 +37,7 @@ LightNode cluster(Rng& rng) {
 // Clusters near and far, receivers with small and large BSDF values. Where the quick test says far,
 // no receiver in the box gets more light than allowed.
 TEST(DeviationModel, TheFarTestIsConservative) {
-  Rng rng(streamKey(11, Stream::Plot), 0);
+  Rng rng(streamKey(11, RandomStream::Plot), 0);
   int far = 0, exceeded = 0;
   for (int i = 0; i < 20000; ++i) {
     const LightNode n = cluster(rng);

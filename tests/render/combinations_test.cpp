@@ -46,7 +46,7 @@ TEST_F(Combinations, EveryGatherWithEveryKindOfLightAndCompensation) {
                        {"compensate", std::string(compensate->name)},
                        {"spp", "2"}};
       const std::optional<double> all = indirect(with({{"gather", "all"}}, rest));
-      const bool fromCentre = isFromCentre(lightKindNamed(kind));
+      const bool fromCentre = isFromCentre(vplKindNamed(kind));
       EXPECT_EQ(all.has_value(), fromCentre || !compensate->oneSize);
       for (const GatherMethod* gather : gatherMethods()) {
         const auto ours = indirect(with({{"gather", std::string(gather->name)}}, rest));

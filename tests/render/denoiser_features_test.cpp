@@ -44,7 +44,7 @@ DenoiserFeatures seen(const Material& material, Wall wall, Vec3 from = {0, 0, 5}
   const Accelerator accel(scene);
   DenoiserFeatures sum;
   for (int i = 0; i < draws; ++i) {
-    Rng rng(streamKey(42, Stream::PixelSamples), uint64_t(i));
+    Rng rng(streamKey(42, RandomStream::PixelSamples), uint64_t(i));
     SurfacePoint hit;
     EXPECT_TRUE(accel.closestHit(from, normalize(-from), hit));
     sum += denoiserFeatures(accel, hit, rng);

@@ -1,10 +1,10 @@
 // The light tree, and VPLs sampled from it.
 #include <gtest/gtest.h>
 
+#include "core/random_streams.h"
 #include "tests/support/gather_checks.h"
 #include "tests/support/gather_of.h"
 #include "tests/support/pipeline.h"
-#include "tools/common/files/streams.h"
 #include "tools/render/gather/shadow_test.h"
 
 namespace bnvpl::test {
@@ -63,7 +63,7 @@ TEST(SampledGather, IsTheSumOverAllOnAverage) {
   const VplLights vpls = makeVplLights(lit().lit, world.accel, 1.0f);
   const GatherOf gather(world, vpls, {{"gather", "all"}});
   const Vec3 middle = world.scene.camera.position;
-  Rng rng(streamKey(5, Stream::PixelSamples), 0);
+  Rng rng(streamKey(5, RandomStream::PixelSamples), 0);
   int points = 0, cases = 0;
   double shares = 0.0;
   while (points < 6) {

@@ -22,12 +22,12 @@ struct Made {
 struct Film {
   explicit Film(uint32_t width, uint32_t height) { scene.film = {width, height}; }
   Made operator()(const Integrator& integrator, uint64_t passes, uint64_t seed, bool adaptive,
-                  const Resume& resume = {}) const {
+                  const WorkControls& controls = {}) const {
     Made made;
     const FilmOptions options{.seed = seed, .layers = parseLayers("error,samples", true, true)};
     const Budget budget{.passes = passes, .adaptive = adaptive};
     made.image =
-        renderPasses(scene, integrator, options, budget, made.stats, made.passes, {}, resume);
+        renderPasses(scene, integrator, options, budget, made.stats, made.passes, {}, controls);
     return made;
   }
   Scene scene;
@@ -228,7 +228,7 @@ TEST(Passes, SameBytesForAnyThreadsAndInterruptions) {
       };
     }
     std::vector<std::string> states;
-    Resume often{"", [] { return true; }, [&](const std::string& s) { states.push_back(s); }};
+    WorkControls often{"", [] { return true; }, [&](const std::string& s) { states.push_back(s); }};
     const Made whole = film(both, 7, 1, true);
     std::vector<Made> others{film(both, 7, 1, true, often)};
     EXPECT_GT(states.size(), 14u);

@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "core/random.h"
+#include "core/random_streams.h"
 #include "core/sampling.h"
 #include "tests/support/gather_checks.h"
-#include "tools/common/files/streams.h"
 
 namespace bnvpl::test {
 namespace {
@@ -19,14 +19,14 @@ using Kinds = decltype(typesOf(VplKinds{}));
 TYPED_TEST_SUITE(EachLightKind, Kinds);
 
 TYPED_TEST(EachLightKind, IsFoundByItsName) {
-  EXPECT_EQ(withKind(lightKindNamed(TypeParam::name), [](auto kind) { return kind.name; }),
+  EXPECT_EQ(withKind(vplKindNamed(TypeParam::name), [](auto kind) { return kind.name; }),
             TypeParam::name);
 }
 
 TEST(LightKindsOfOptions, AreTheList) {
   EXPECT_EQ(kLightKinds, "point|disk|yuksel|spherical");
-  EXPECT_EQ(lightKindNamed("point"), VplKind{});
-  EXPECT_THROW(lightKindNamed("line"), std::logic_error);
+  EXPECT_EQ(vplKindNamed("point"), VplKind{});
+  EXPECT_THROW(vplKindNamed("line"), std::logic_error);
 }
 
 TYPED_TEST(EachLightKind, FallOffWithDistanceAndNeverExceedAPoint) {
@@ -96,7 +96,7 @@ TYPED_TEST(EachLightKind, FourAtOnceAreFourSingleOnes) {
 // Over a cone of axes, no axis emits more than the upper bound, which is at most 1, or less than
 // the lower one.
 TYPED_TEST(EachLightKind, BoundWhatAConeEmits) {
-  Rng rng(streamKey(3, Stream::PixelSamples), 0);
+  Rng rng(streamKey(3, RandomStream::PixelSamples), 0);
   for (int i = 0; i < 300; ++i) {
     const float half = kPi * rng.next(), cosHalf = std::cos(half),
                 sinHalf = half < 0.5f * kPi ? std::sin(half) : 1.0f;
@@ -135,7 +135,7 @@ TEST(LightKindsOfImages, HaveTheirEnergyRestored) {
   world.scene.film = {24, 24};
   const VplTable lit = litVpls(world, {{"count", "300"}});
   for (const std::string_view light : VplKinds::names) {
-    if (!isFromCentre(lightKindNamed(light))) continue;  // it removes nothing
+    if (!isFromCentre(vplKindNamed(light))) continue;  // it removes nothing
     const FilmStats stats =
         renderVpls(world, lit, {{"spp", "32"}, {"light", std::string(light)}}).stats;
     EXPECT_NEAR(stats.indirect, 0.5, 0.02) << light;

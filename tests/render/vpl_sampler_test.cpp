@@ -7,8 +7,8 @@
 #include <map>
 #include <set>
 
+#include "core/random_streams.h"
 #include "tests/render/random_lights.h"
-#include "tools/common/files/streams.h"
 
 namespace bnvpl::test {
 namespace {
@@ -25,7 +25,7 @@ struct Mean {
 // A drawn VPL that can light the point counts one over its probability: the expected count is the
 // number of such VPLs.
 void requireRightProbabilities(size_t count, bool glossy) {
-  Rng rng(streamKey(count, Stream::Plot), glossy);
+  Rng rng(streamKey(count, RandomStream::Plot), glossy);
   const VplLights lights = lightsAbout(count, rng);
   const LightTree tree = buildLightTree(lights, 1);
   const VplSampler sampler(tree);

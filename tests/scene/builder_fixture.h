@@ -13,7 +13,7 @@ inline const std::vector<double> kCorners{0, 0, 0, 2, 0, 0, 0, 2, 0, 0, 0, NAN};
 inline Triangle corners(std::array<uint32_t, 3> position, uint32_t material) {
   return {position, kNoCorners, kNoCorners, material};
 }
-inline Material lampOf(float radiance) {
+inline Material emitterOf(float radiance) {
   Material m;
   m.emission = Vec3(radiance);
   return m;

@@ -84,7 +84,7 @@ TEST_F(BuilderLimits, WhatLiesBeyondFloatsIsRefused) {
     EXPECT_THROW(loadMesh(kSquareObj + stray, mtl), InputError) << x;
   }
   SceneBuilder far("scene"), lamp("scene");
-  for (SceneBuilder* b : {&far, &lamp}) addTriangle(*b, b->addMaterial(lampOf(1)));
+  for (SceneBuilder* b : {&far, &lamp}) addTriangle(*b, b->addMaterial(emitterOf(1)));
   far.setCamera({0, -1e19, 0}, {});
   EXPECT_THROW(far.finish(), InputError);
   lamp.addLight({}, {1e19, 0, 0});

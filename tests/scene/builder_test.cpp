@@ -55,7 +55,7 @@ TEST_F(Builder, MakesWhatAFileSays) {
 
 TEST_F(Builder, CountsEveryMeshFromItsOwnArrays) {
   SceneBuilder builder("s");
-  const uint32_t lamp = builder.addMaterial(lampOf(1));
+  const uint32_t lamp = builder.addMaterial(emitterOf(1));
   Affine far;
   far.m[0][3] = 10;
   addTriangle(builder, lamp);
@@ -68,7 +68,7 @@ TEST_F(Builder, CountsEveryMeshFromItsOwnArrays) {
 
 TEST_F(Builder, MirroredMeshesKeepTheirOutside) {
   SceneBuilder builder("s");
-  const uint32_t lamp = builder.addMaterial(lampOf(1));
+  const uint32_t lamp = builder.addMaterial(emitterOf(1));
   addTriangle(builder, lamp);
   addTriangle(builder, lamp, Affine::fromParts({}, {}, {-1, 1, 1}));
   const Scene scene = builder.finish();
@@ -78,7 +78,7 @@ TEST_F(Builder, MirroredMeshesKeepTheirOutside) {
 
 TEST_F(Builder, LeavesOutWhatHasNoPlace) {
   SceneBuilder builder("s");
-  const uint32_t lamp = builder.addMaterial(lampOf(1));
+  const uint32_t lamp = builder.addMaterial(emitterOf(1));
   Mesh mesh{kCorners, {}, {}, {}};
   for (const auto& c : {std::array<uint32_t, 3>{0, 1, 2}, {0, 1, 3}, {0, 1, 4}, {0, 1, kNone}})
     mesh.triangles.push_back(corners(c, lamp));
@@ -93,7 +93,7 @@ TEST_F(Builder, LeavesOutWhatHasNoPlace) {
 
 TEST_F(Builder, NormalsAreUnitVectorsOrNone) {
   SceneBuilder builder("s");
-  const uint32_t lamp = builder.addMaterial(lampOf(1));
+  const uint32_t lamp = builder.addMaterial(emitterOf(1));
   const std::vector<double> normals{0, 0, 7, 0, 0, 0, NAN, 0, 0};
   Mesh mesh{kCorners, normals, {}, {{{0, 1, 2}, {0, 1, 2}, {7, kNone, 0}, lamp}}};
   builder.addMesh("m.obj", mesh);
@@ -107,7 +107,7 @@ TEST_F(Builder, NormalsAreUnitVectorsOrNone) {
 
 TEST_F(Builder, GreyIsOneMaterialOfItsOwn) {
   SceneBuilder builder("s");
-  builder.addMaterial(lampOf(1));  // unnamed, too
+  builder.addMaterial(emitterOf(1));  // unnamed, too
   EXPECT_EQ(builder.addMesh("a", {kCorners, {}, {}, {corners({0, 1, 2}, kNone)}}), 1u);
   EXPECT_EQ(builder.addMesh("b", {kCorners, {}, {}, {corners({0, 1, 2}, kNone)}}), 1u);
   const Scene scene = builder.finish();
@@ -118,9 +118,9 @@ TEST_F(Builder, GreyIsOneMaterialOfItsOwn) {
 
 TEST_F(Builder, OpaqueTrianglesComeFirst) {
   SceneBuilder builder("s");
-  Material cut = lampOf(1);
+  Material cut = emitterOf(1);
   cut.opacity = 0.1f;
-  const uint32_t masked = builder.addMaterial(cut), opaque = builder.addMaterial(lampOf(2));
+  const uint32_t masked = builder.addMaterial(cut), opaque = builder.addMaterial(emitterOf(2));
   Affine aside;
   aside.m[0][3] = 5;
   addTriangle(builder, masked);
@@ -136,7 +136,7 @@ TEST_F(Builder, TexturesAreNumberedByTheirUse) {
   SceneBuilder builder("s");
   builder.expectTexture({.file = at("a.tga")});
   builder.expectTexture({.file = at("nobody-asks-again.tga")});
-  Material m = lampOf(1);
+  Material m = emitterOf(1);
   m.phong().glossyMap = builder.addTexture({.file = at("bad.tga")});
   m.phong().diffuseMap = builder.addTexture({.file = at("a.tga")});
   m.opacityMap = builder.addTexture({.file = at("a.tga"), .srgb = false, .mask = true});
@@ -164,7 +164,7 @@ TEST_F(Builder, FarScenesCountFromTheirOwnOriginWithCameraAndLights) {
   SceneBuilder builder("s");
   Affine far;
   far.m[0][3] = 1e6;
-  addTriangle(builder, builder.addMaterial(lampOf(1)), far);
+  addTriangle(builder, builder.addMaterial(emitterOf(1)), far);
   builder.setCamera({1e6, 1, 3}, {});
   LightSpec light;
   light.emission = Vec3(1);
@@ -182,7 +182,7 @@ TEST_F(Builder, FarScenesCountFromTheirOwnOriginWithCameraAndLights) {
 
 TEST_F(Builder, WarningsAndFilesAreNamedOnce) {
   SceneBuilder builder("s");
-  addTriangle(builder, builder.addMaterial(lampOf(1)));
+  addTriangle(builder, builder.addMaterial(emitterOf(1)));
   builder.setCamera({0, 0, 5}, {});
   for (int i = 0; i < 2; ++i) {
     builder.warn("odd");
@@ -224,8 +224,8 @@ TEST_F(Builder, ReportsASceneWithoutLight) {
     return builder.finish();
   };
   EXPECT_TRUE(warned(sceneWith({}, {}, {})));
-  EXPECT_TRUE(warned(sceneWith({}, lampOf(1), {})));
-  EXPECT_FALSE(warned(sceneWith(lampOf(1e-3f), {}, {})));
+  EXPECT_TRUE(warned(sceneWith({}, emitterOf(1), {})));
+  EXPECT_FALSE(warned(sceneWith(emitterOf(1e-3f), {}, {})));
   for (const LightType type :
        {LightType::Point, LightType::Spot, LightType::Directional, LightType::Environment}) {
     LightSpec light;

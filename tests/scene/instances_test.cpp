@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "core/random.h"
+#include "core/random_streams.h"
 #include "core/sampling.h"
 #include "scene/scene_builder.h"
-#include "tools/common/files/streams.h"
 #include "transport/accelerator.h"
 #include "transport/lights.h"
 

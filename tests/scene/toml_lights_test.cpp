@@ -21,7 +21,7 @@ class TomlLights : public SceneFiles {
   Scene lit(const std::string& keys) const {
     return load("[[mesh]]\nfile = \"dark.obj\"\n" + light(keys));
   }
-  static uint32_t lampOf(const Scene& s) {
+  static uint32_t emitterOf(const Scene& s) {
     uint32_t t = 0;
     while (isBlack(s.materials[s.triangles.at(t).material].emission)) ++t;
     return t;
@@ -99,7 +99,7 @@ TEST_F(TomlLights, RectanglesFaceWhereTheyAreAimed) {
       "position = [0, 1, 0]\n";
   const auto check = [&](const std::string& aim, Vec3 normal, Vec3 half) {
     const Scene s = lit(size + aim);
-    const uint32_t t = lampOf(s);
+    const uint32_t t = emitterOf(s);
     EXPECT_LT(length(geometricNormal(s, t) - normal), 1e-6f) << aim;
     Bounds box;
     for (uint32_t i = t; i < t + 2; ++i) {

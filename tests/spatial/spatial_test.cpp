@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "core/random.h"
+#include "core/random_streams.h"
 #include "spatial/all_neighbours.h"
 #include "spatial/cell_lists.h"
 #include "spatial/kd_tree.h"
@@ -12,7 +13,6 @@
 #include "spatial/reach_grid.h"
 #include "spatial/region_grid.h"
 #include "tests/eliminate/clouds.h"
-#include "tools/common/files/streams.h"
 
 namespace bnvpl {
 namespace {
@@ -117,7 +117,7 @@ TEST(Spatial, CellListsMissNoPair) {
   for (const std::vector<Vec3>& points : clouds()) {
     for (const float size : {0.01f, 0.1f, 1.0f}) {
       std::vector<float> equal(points.size(), size), uneven(points.size());
-      Rng rng(streamKey(5, Stream::Plot), 0);
+      Rng rng(streamKey(5, RandomStream::Plot), 0);
       for (float& r : uneven) r = size * std::pow(2.0f, -12.0f * rng.next());
       expectAllPairs(points, equal);
       expectAllPairs(points, uneven);
@@ -140,7 +140,7 @@ TEST(Spatial, CellListsLeaveTheFarAway) {
 TEST(Spatial, DisksThatReachAreAllFound) {
   for (const std::vector<Vec3>& points : clouds()) {
     std::vector<float> radius(points.size());
-    Rng rng(streamKey(6, Stream::Plot), 0);
+    Rng rng(streamKey(6, RandomStream::Plot), 0);
     for (float& r : radius) r = std::pow(2.0f, 3.0f - 12.0f * rng.next());
     if (points.size() > 1) radius[0] = 1e-42f, radius[1] = 1e6f;
     const std::vector<Vec3> normals(points.size(), Vec3{0, 0, 1});

@@ -60,7 +60,7 @@ inline void expectEnergyOfAll(const std::string& gather, double tolerance, uint6
     for (const std::string_view name : VplKinds::names) {
       const std::string light(name);
       // One room shows that spheres are gathered; their light costs most.
-      if (!isFromCentre(lightKindNamed(light)) && c != gatherCases().front()) continue;
+      if (!isFromCentre(vplKindNamed(light)) && c != gatherCases().front()) continue;
       double sum = 0.0, all = 0.0;
       for (uint64_t seed = 1; seed <= seeds; ++seed) {
         sum += meanOf(c->indirect(gather, with(options, {{"light", light}}), seed));
@@ -117,10 +117,10 @@ inline void expectSameBytesInShards(const std::string& gather, const Given& more
     records[{std::string(work), unit}] = bytes;
   };
   for (const uint64_t k : {0u, 1u, 2u}) {
-    Resume resume;
-    resume.shard = {k, k + 1, 3};
-    resume.sink = &sink;
-    render(c.world.accel, c.world.lights, c.lit, options, {}, resume);
+    WorkControls controls;
+    controls.shard = {k, k + 1, 3};
+    controls.sink = &sink;
+    render(c.world.accel, c.world.lights, c.lit, options, {}, controls);
   }
   ShardSource source;
   source.record = [&](std::string_view work, uint64_t unit) -> std::optional<std::string> {

@@ -39,20 +39,20 @@ inline PlaceResult placeVpls(const World& world, const Given& options) {
   return place({world.accel, world.lights, PlaceViews(world.scene)}, resolve(placeSpec(), options));
 }
 inline VplTable keepVpls(const VplTable& candidates, const Given& options) {
-  return eliminate(candidates, resolve(eliminateSpec(), options)).table;
+  return eliminate(candidates, resolve(eliminateSpec(), options));
 }
 inline EstimateResult lightVpls(const World& world, const VplTable& vpls, const Given& options,
-                                const Resume& resume = {}) {
-  return estimate(vpls, world.accel, world.lights, resolve(estimateSpec(), options), {}, resume);
+                                const WorkControls& controls = {}) {
+  return estimate(vpls, world.accel, world.lights, resolve(estimateSpec(), options), {}, controls);
 }
 inline RenderResult renderVpls(const World& world, const VplTable& lit, const Given& options,
-                               const Resume& resume = {}) {
-  return render(world.accel, world.lights, lit, resolveRender(options), {}, resume);
+                               const WorkControls& controls = {}) {
+  return render(world.accel, world.lights, lit, resolveRender(options), {}, controls);
 }
 // Renders without VPLs, by the path tracer or the light tracer.
 inline RenderResult renderWithout(const World& world, const std::string& integrator,
-                                  const Given& options, const Resume& resume = {}) {
-  return renderVpls(world, {}, with({{"integrator", integrator}}, options), resume);
+                                  const Given& options, const WorkControls& controls = {}) {
+  return renderVpls(world, {}, with({{"integrator", integrator}}, options), controls);
 }
 
 // Collects the names of a stage's preparations in the order in which they begin.

@@ -158,10 +158,15 @@ TEST(EmissionGuide, EmittedByIsTheInverseOfEmit) {
   scene.environments.push_back(image);
   LightSpec textured = skyLight();
   textured.image = 0;
-  scene.lights = {sunLight(), skyLight(), textured};
+  LightSpec point, spot;
+  point.type = LightType::Point, point.position = {1, 2, 3}, point.emission = Vec3(1.0f);
+  spot = point;
+  spot.type = LightType::Spot, spot.direction = normalize(Vec3(0.3f, -1.0f, 0.2f));
+  spot.coneRad = 0.4f, spot.falloffRad = 0.1f;
+  scene.lights = {sunLight(), skyLight(), textured, point, spot};
   const Accelerator accel(scene);
   const LightSet lights(accel);
-  ASSERT_EQ(lights.size(), 5u);
+  ASSERT_EQ(lights.size(), 7u);
   for (size_t light = 0; light < lights.size(); ++light) {
     for (uint64_t i = 0; i < 2000; ++i) {
       Rng rng(3, i);

@@ -1,9 +1,9 @@
 // Accelerator for Processor::Any computes its own hits in Embree's traversal.
 #include "core/random.h"
+#include "core/random_streams.h"
 #include "core/sampling.h"
 #include "scene/scene_builder.h"
 #include "tests/scene/scene_files.h"
-#include "tools/common/files/streams.h"
 #include "transport/accelerator.h"
 
 namespace bnvpl {
@@ -17,7 +17,7 @@ TEST_F(ExactRays, HitWhatEmbreeHits) {
   ASSERT_LT(scene.maskedBegin, scene.worldEnd());
   const Accelerator embree(scene), exact(scene, Processor::Any);
   const float size = scene.bounds.diagonal();
-  Rng rng(streamKey(3, Stream::Plot), 0);
+  Rng rng(streamKey(3, RandomStream::Plot), 0);
   int found = 0, other = 0, differ = 0;
   std::vector<Segment> segments;
   for (int i = 0; i < 20000; ++i) {
@@ -50,7 +50,7 @@ TEST_F(ExactRays, TheFirstOfTrianglesAtOneDistanceIsHit) {
   const Scene scene =
       loadMesh(kSquareObj + "f 3 4 1 2\nf 2 3 4 1\nf 4 1 2 3\n", "newmtl paint\nKd 0.5 0.5 0.5\n");
   const Accelerator accel(scene, Processor::Any);
-  Rng rng(streamKey(4, Stream::Plot), 0);
+  Rng rng(streamKey(4, RandomStream::Plot), 0);
   for (int i = 0; i < 1000; ++i) {
     const float x = 2 * rng.next() - 1, y = 2 * rng.next() - 1;
     for (const float side : {1.0f, -1.0f}) {

@@ -200,7 +200,7 @@ TEST(DirectLight, LampSampleIsWhatARayFinds) {
       size_t light = kNone;
       const Vec3 radiance = lit.lights.emitted(hit, light);
       ASSERT_EQ(light, 0u);
-      const float pdf = lit.lights.pdfEmitted(light, hit, from);
+      const float pdf = lit.lights.pdfDirect(light, hit, from);
       EXPECT_NEAR(pdf, s.pdf, 2e-4f * pdf);
       expectClose(s.radianceOverPdf * s.pdf, radiance, 1e-2f);
       const Point2 back = lit.lights.invertSample(light, hit);

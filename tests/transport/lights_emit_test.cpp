@@ -206,7 +206,7 @@ TEST(Emission, PhotonsOfNarrowSunsHaveTheirDensity) {
     scene.lights.push_back(sun(diameterDeg));
     const Accelerator accel(scene);
     const LightSet lights(accel);
-    Rng rng(streamKey(4, Stream::Photons), 1);
+    Rng rng(streamKey(4, RandomStream::Photons), 1);
     for (int k = 0; k < 20000; ++k) {
       const PhotonStart start = lights.emit(0, rng);
       ASSERT_GT(lights.photonDensity(0, -start.direction), 0.0f) << diameterDeg;

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "core/random.h"
+#include "core/random_streams.h"
 #include "core/sampling.h"
-#include "tools/common/files/streams.h"
 #include "transport/bsdf.h"
 #include "transport/lights.h"
 
@@ -61,7 +61,7 @@ inline Scene floorScene() {
 inline Vec3 meanOver(int count, const std::function<Vec3(Rng&)>& term) {
   double sum[3] = {0, 0, 0};
   for (int i = 0; i < count; ++i) {
-    Rng rng(streamKey(42, Stream::PixelSamples), uint64_t(i));
+    Rng rng(streamKey(42, RandomStream::PixelSamples), uint64_t(i));
     const Vec3 v = term(rng);
     for (size_t c = 0; c < 3; ++c) sum[c] += double{v[c]};
   }

@@ -1,7 +1,7 @@
 #include "core/random.h"
+#include "core/random_streams.h"
 #include "core/sampling.h"
 #include "tests/scene/scene_files.h"
-#include "tools/common/files/streams.h"
 #include "transport/accelerator.h"
 
 namespace bnvpl {
@@ -34,7 +34,7 @@ TEST_F(Rays, HitsAreDescribedFromTheSideOfTheRay) {
 TEST_F(Rays, ManyAtOnceAreWhatTheyAreOneByOne) {
   const Scene scene = loadScene(fs::path(BNVPL_SCENES) / "test/quirks.toml");
   const Accelerator accel(scene);
-  Rng rng(streamKey(9, Stream::Plot), 0);
+  Rng rng(streamKey(9, RandomStream::Plot), 0);
   std::array<Ray, Accelerator::kBatch> some;
   std::array<SurfacePoint, Accelerator::kBatch> hits;
   size_t found = 0, left = 0;
@@ -144,7 +144,7 @@ TEST_F(Rays, OcclusionIsStrictlyBetween) {
 TEST_F(Rays, OcclusionOfManyIsWhatItIsOneByOne) {
   const Scene scene = loadScene(fs::path(BNVPL_SCENES) / "cornell/scene.toml");
   const Accelerator accel(scene);
-  Rng rng(streamKey(10, Stream::Plot), 0);
+  Rng rng(streamKey(10, RandomStream::Plot), 0);
   const auto somewhere = [&](float share, Vec3 about) {
     const Vec3 at{rng.next() - 0.5f, rng.next() - 0.5f, rng.next() - 0.5f};
     return about + share * (scene.bounds.extent() * at);

@@ -40,9 +40,8 @@ const EliminateMethod& eliminateMethod(const Values& options) {
   return methodNamed(eliminateMethods(), options[kMethodSlot]);
 }
 
-EliminateResult eliminate(const VplTable& candidates, const Values& options,
-                          const Accelerator* accel, const LightSet* lights,
-                          const ProgressFn& progress) {
+VplTable eliminate(const VplTable& candidates, const Values& options, const Accelerator* accel,
+                   const LightSet* lights, const ProgressFn& progress) {
   const EliminateMethod& method = eliminateMethod(options);
   if (method.needsScene && !(accel && lights)) {
     throw UsageError("--method " + std::string(method.name) +
@@ -50,8 +49,7 @@ EliminateResult eliminate(const VplTable& candidates, const Values& options,
   }
   requireEnough(candidates.size(), options[kEliminateCountOption]);
   const Kept kept = method.run({candidates, accel, lights, progress}, options);
-  EliminateResult result{keepRows(candidates, kept.rows), kept.rMax, kept.area};
-  VplTable& table = result.table;
+  VplTable table = keepRows(candidates, kept.rows);
   if (table.stage == VplStage::Candidates) table.stage = VplStage::Eliminated;
   table.radius = kept.radius;
   table.rMax = kept.rMax;
@@ -60,7 +58,7 @@ EliminateResult eliminate(const VplTable& candidates, const Values& options,
     table.flux[i] *= kept.weight[i];
     table.firstBounceFlux[i] *= kept.weight[i];
   }
-  return result;
+  return table;
 }
 
 }  // namespace bnvpl

@@ -49,16 +49,12 @@ std::span<const EliminateMethod* const> eliminateMethods();
 const StageSpec& eliminateSpec();
 const EliminateMethod& eliminateMethod(const Values& options);
 
-struct EliminateResult {
-  VplTable table;  // its stage is Eliminated, or Lit if the method takes lit rows
-  double rMax = 0.0, area = 0.0;
-};
-
 // Keeps rows of `candidates`, whose stage is the one that the method takes; normals have unit
 // length. A pure function: the number of threads does not change a byte. Throws InputError if count
 // is above the number of candidates, and UsageError if the method needs a scene and there is none.
-EliminateResult eliminate(const VplTable& candidates, const Values& options,
-                          const Accelerator* accel = nullptr, const LightSet* lights = nullptr,
-                          const ProgressFn& progress = {});
+// The stage of the result is Eliminated, or Lit if the method takes lit rows.
+VplTable eliminate(const VplTable& candidates, const Values& options,
+                   const Accelerator* accel = nullptr, const LightSet* lights = nullptr,
+                   const ProgressFn& progress = {});
 
 }  // namespace bnvpl

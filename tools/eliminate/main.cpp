@@ -64,9 +64,9 @@ int runEliminate(const StageRequest& request, const fs::path& input, const ToolO
       stageRecord("vpl-eliminate", recordOf(eliminateSpec(), options), inputs, tool.processor);
   if (world) record["view"] = viewRecord(world->scene);
   const auto whole = [&](const StageTask& task) {
-    EliminateResult kept = eliminate(candidates, options, accel, lights, task.progress);
-    kept.table.provenance = extendProvenance(candidates.provenance, record);
-    writeVpl(task.files.add(request.output), kept.table);
+    VplTable kept = eliminate(candidates, options, accel, lights, task.progress);
+    kept.provenance = extendProvenance(candidates.provenance, record);
+    writeVpl(task.files.add(request.output), kept);
     reportEliminated(kept, candidates.size(), task.summary);
   };
   return run.make({record, "candidates", candidates.size(), read, whole});

@@ -8,8 +8,8 @@
 #include "core/errors.h"
 #include "core/parallel.h"
 #include "core/random.h"
+#include "core/random_streams.h"
 #include "spatial/local_density.h"
-#include "tools/common/files/streams.h"
 
 namespace bnvpl {
 namespace {
@@ -44,7 +44,7 @@ double areaOf(std::span<const Vec3> position, std::span<const Vec3> normal, unsi
 double estimateArea(std::span<const Vec3> position, std::span<const Vec3> normal, unsigned k,
                     uint64_t seed, const ProgressFn& progress) {
   if (position.size() > kMaxAreaCandidates) {
-    const uint64_t key = streamKey(seed, Stream::AreaEstimate);
+    const uint64_t key = streamKey(seed, RandomStream::AreaEstimate);
     const uint64_t below = UINT64_MAX / position.size() * kMaxAreaCandidates;
     std::vector<Vec3> someOfPosition, someOfNormal;
     for (size_t i = 0; i < position.size(); ++i) {

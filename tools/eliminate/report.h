@@ -6,6 +6,6 @@
 
 namespace bnvpl {
 
-void reportEliminated(const EliminateResult& kept, size_t candidates, Summary& summary);
+void reportEliminated(const VplTable& kept, size_t candidates, Summary& summary);
 
 }  // namespace bnvpl

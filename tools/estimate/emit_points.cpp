@@ -33,14 +33,6 @@ void EmitPoints::add(std::span<const EmitPoint> others) {
   }
 }
 
-void EmitPoints::add(const EmitPoints& others, std::span<const double> weight) {
-  for (size_t i = 0; i < winners_.size(); ++i) {
-    EmitPoint other = others.winners_[i];
-    other.key /= weight[i / perVpl_];
-    if (other.key < winners_[i].key) winners_[i] = other;
-  }
-}
-
 void EmitPoints::fill(VplTable& lit) const {
   if (perVpl_ == 0) return;
   lit.emitPoints = static_cast<uint32_t>(perVpl_);

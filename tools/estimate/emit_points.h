@@ -49,8 +49,6 @@ class EmitPoints {
   void offer(size_t vpl, double weight, const SurfacePoint& hit);
   // Merges reservoirs of the same VPLs that other hits filled.
   void add(std::span<const EmitPoint> others);
-  // The same, with the weights of VPL i's hits multiplied by weight[i].
-  void add(const EmitPoints& others, std::span<const double> weight);
   // Sets the emission columns of the table. A VPL without a winner emits from its position.
   void fill(VplTable& lit) const;
 

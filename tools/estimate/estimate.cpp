@@ -27,9 +27,10 @@ Work estimateWork(const VplTable& vpls, const Values& options) {
 }
 
 EstimateResult estimate(const VplTable& vpls, const Accelerator& accel, const LightSet& lights,
-                        const Values& options, const ProgressFn& progress, const Resume& resume) {
+                        const Values& options, const ProgressFn& progress,
+                        const WorkControls& controls) {
   return methodNamed(estimateMethods(), options[kMethodSlot])
-      .run({vpls, accel, lights, progress, resume}, options);
+      .run({vpls, accel, lights, progress, controls}, options);
 }
 
 }  // namespace bnvpl

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "core/progress.h"
-#include "core/resume.h"
+#include "core/work_controls.h"
 #include "formats/vpl/vpl_table.h"
 #include "tools/common/stage/method.h"
 #include "transport/accelerator.h"
@@ -40,7 +40,7 @@ struct EstimateInputs {
   const Accelerator& accel;
   const LightSet& lights;
   const ProgressFn& progress;  // counts units of the method's Work
-  const Resume& resume;
+  const WorkControls& controls;
 };
 
 // Amount of work, for progress.
@@ -66,6 +66,6 @@ Work estimateWork(const VplTable& vpls, const Values& options);
 // has power.
 EstimateResult estimate(const VplTable& vpls, const Accelerator& accel, const LightSet& lights,
                         const Values& options, const ProgressFn& progress = {},
-                        const Resume& resume = {});
+                        const WorkControls& controls = {});
 
 }  // namespace bnvpl

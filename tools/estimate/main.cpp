@@ -36,13 +36,13 @@ int runEstimate(const StageRequest& request, const fs::path& input, const ToolOp
   const Accelerator accel(scene, tool.processor);
   const LightSet lights(accel);
   const Work work = estimateWork(vpls, options);
-  const auto result = [&](const ProgressFn& progress, const Resume& resume) {
-    return estimate(vpls, accel, lights, options, progress, resume);
+  const auto result = [&](const ProgressFn& progress, const WorkControls& controls) {
+    return estimate(vpls, accel, lights, options, progress, controls);
   };
   if (run.estimating()) {
     return run.tell(std::string(work.unit), [&](const ProgressFn& progress) {
       CostTrial trial(cpuSecondsSoFar);
-      return costOfUnits([&](const Resume& resume) { result(progress, resume); }, trial,
+      return costOfUnits([&](const WorkControls& controls) { result(progress, controls); }, trial,
                          {.fewest = 64.0});
     });
   }
@@ -51,13 +51,13 @@ int runEstimate(const StageRequest& request, const fs::path& input, const ToolOp
       "vpl-estimate", recordOf(estimateSpec(), options),
       {{"scene", hashText(scene.contentHash)}, {"vpls", hashText(vpls.checksum)}}, tool.processor);
   const auto whole = [&](const StageTask& task) {
-    EstimateResult all = result(task.progress, task.resume);
+    EstimateResult all = result(task.progress, task.controls);
     all.table.provenance = extendProvenance(vpls.provenance, record);
     writeVpl(task.files.add(request.output), all.table);
     reportEstimate(all, task.summary);
   };
   const auto part = [&](const StageTask& task) -> ShardRun {
-    reportShard(result(task.progress, task.resume), task.summary);
+    reportShard(result(task.progress, task.controls), task.summary);
     const Json sources{{"scene", toJson(request.scene)}, {"vpls", input.string()}};
     return {record, request.given, sources, request.command, ""};
   };

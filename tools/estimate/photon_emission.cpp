@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/common/files/streams.h"
+#include "core/random_streams.h"
 #include "tools/estimate/photon_scatter.h"
 #include "transport/photon_walk.h"
 
@@ -11,9 +11,8 @@ namespace bnvpl {
 
 namespace {
 
-// Photons of the estimate per pilot photon, of which there are at most kMaxPilot. A quarter of them
-// estimates the VPLs' flux.
-constexpr uint64_t kPilotShare = 32, kMaxPilot = 1 << 20, kFluxShare = 4;
+constexpr uint64_t kPhotonsPerPilotPhoton = 32, kMaxPilot = 1 << 20;
+constexpr uint64_t kPilotPhotonsPerFluxPhoton = 4;  // those that estimate the VPLs' flux
 constexpr uint64_t kTrialPhotons = 1 << 16;  // limit for a cost trial (--estimate)
 constexpr double kMinFlux = 0.1;
 
@@ -37,19 +36,20 @@ std::vector<double> weightsByFlux(const EstimateInputs& in, const PhotonScatter&
 
 LearnedEmission learnPhotonEmission(const EstimateInputs& in, const Values& options,
                                     unsigned maxBounces, uint64_t photons) {
-  if (options[kEmissionOption] == "power" || in.resume.source) return {EmissionGuide(in.lights)};
-  const uint64_t pilot = std::min(kMaxPilot, (photons + kPilotShare - 1) / kPilotShare),
-                 sent = unitsToTry(in.resume.trial, pilot, kTrialPhotons);
-  const CostTrial::Part part(in.resume.trial,
+  if (options[kEmissionOption] == "power" || in.controls.source) return {EmissionGuide(in.lights)};
+  const uint64_t pilot = std::min(kMaxPilot,
+                                  (photons + kPhotonsPerPilotPhoton - 1) / kPhotonsPerPilotPhoton),
+                 sent = unitsToTry(in.controls.trial, pilot, kTrialPhotons);
+  const CostTrial::Part part(in.controls.trial,
                              static_cast<double>(pilot) / static_cast<double>(sent));
-  const uint64_t key = streamKey(options[kSeedOption], Stream::PhotonEmission);
-  const PhotonShares shares(in.lights, std::max<uint64_t>(1, sent / kFluxShare));
+  const uint64_t key = streamKey(options[kSeedOption], RandomStream::PhotonEmission);
+  const PhotonShares shares(in.lights, std::max<uint64_t>(1, sent / kPilotPhotonsPerFluxPhoton));
   const PhotonScatter scatter(in, options.real32(kRadiusOption), shares.total());
   const std::vector<double> weights =
       weightsByFlux(in, scatter, {mix64(key), 0, maxBounces, shares, scatter});
   const Coverage& coverage = scatter.coverage();
   return learnEmission(
-      in.lights, sent - sent / kFluxShare, key,
+      in.lights, sent - sent / kPilotPhotonsPerFluxPhoton, key,
       [&](const Emission&, const PhotonStart& start, Rng& rng, bool) {
         double squares = 0.0;
         Rng choice = rng;  // which of several VPLs gets the light

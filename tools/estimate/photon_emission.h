@@ -12,7 +12,7 @@ inline constexpr auto kEmissionOption =
                 "emission", "guided", "guided|power",
                 "photons start where pilot photons found ways to VPLs, or in proportion to power"));
 
-// Learns from pilot photons, a small share of `photons`, from which emission photons reach VPLs.
+// Learns from pilot photons, a small share of `photons`, where photons that reach VPLs start.
 // The guide minimises the sum over VPLs of variance over flux, where a VPL's flux is not taken
 // below a tenth of the mean. Learns nothing with --emission power, and in a merge, which traces no
 // photon. `maxBounces`: that of the photons.

@@ -8,8 +8,8 @@
 #include <cmath>
 
 #include "core/parallel.h"
-#include "tools/common/files/streams.h"
-#include "transport/photon_walk.h"
+#include "core/random_streams.h"
+#include "tools/estimate/photon_batch.h"
 
 namespace bnvpl {
 
@@ -20,90 +20,6 @@ constexpr std::string_view kPhotonWork = "photons", kPhotonPointsWork = "emit-po
 constexpr uint64_t rangesOf(uint64_t photons) {
   return (photons + kPhotonsPerRange - 1) / kPhotonsPerRange;
 }
-
-// Photons that advance together, one ray each per round, which hides the latency of memory.
-class PhotonBatch {
- public:
-  PhotonBatch(const Accelerator& accel, const PhotonScatter& scatter, const ScatterRule& rule)
-      : accel_(accel),
-        scatter_(scatter),
-        rule_(rule),
-        photons_(kSize),
-        hittable_(kSize),
-        group_(kSize),
-        next_(kSize),
-        hits_(kSize),
-        near_(kSize) {}
-
-  // Follows photons to their ends. start(walk, hittable, group) makes the next photon and sets
-  // whether rays can hit its light, and its light group; it returns false if none is left.
-  template <typename Start>
-  void follow(const Start& start, PhotonSums& sums) {
-    size_t size = 0;
-    while (size < kSize && startAt(size, start)) ++size;
-    while (size > 0) {
-      // New photons replace those that have ended.
-      for (size_t i = 0; i < size;) {
-        PhotonWalk& photon = photons_[i];
-        if (photon.goesOn()) {
-          next_[i++] = photon.next();
-          continue;
-        }
-        finish(photon, sums);
-        if (startAt(i, start)) continue;
-        photon = photons_[--size];
-        hittable_[i] = hittable_[size];
-        group_[i] = group_[size];
-      }
-      intersect(size);
-      for (size_t i = 0; i < size; ++i) {
-        photons_[i].advance(accel_, hits_[i], [&](const Bsdf& bsdf, Vec3 flux, bool firstBounce) {
-          const Vec3 leaving = flux * bsdf.roughAlbedo();
-          ++sums.hits;
-          scatter_.tally(sums, kReflected, leaving);
-          const bool onlyPhotons = !hittable_[i] && photons_[i].beganAtPerfectMirror();
-          rule_(scatter_, {bsdf.point(), near_[i], leaving, firstBounce, onlyPhotons, group_[i]},
-                photons_[i].rng(), sums);
-        });
-      }
-    }
-  }
-
- private:
-  static constexpr size_t kSize = Accelerator::kBatch;
-
-  template <typename Start>
-  bool startAt(size_t i, const Start& start) {
-    bool hittable = false;
-    if (!start(photons_[i], hittable, group_[i])) return false;
-    hittable_[i] = hittable;
-    return true;
-  }
-  // Finds the hits of the first `size` photons, and the VPLs near them.
-  void intersect(size_t size) {
-    accel_.closestHits({next_.data(), size}, hits_);
-    scatter_.coverage().lookUp(std::span(std::as_const(hits_)).first(size), near_);
-  }
-  void finish(const PhotonWalk& photon, PhotonSums& sums) const {
-    const PhotonFate& fate = photon.fate();
-    scatter_.tally(sums, kEscaped, fate.escaped);
-    scatter_.tally(sums, kAbsorbed, fate.absorbed);
-    sums.rays += fate.rays;
-    sums.nonFinite += fate.finite ? 0 : 1;
-  }
-
-  const Accelerator& accel_;
-  const PhotonScatter& scatter_;
-  const ScatterRule& rule_;
-  // One entry per photon: its walk, whether rays can hit its light, its light group, its next ray,
-  // the hit, and VPLs near it.
-  std::vector<PhotonWalk> photons_;
-  std::vector<uint8_t> hittable_;
-  std::vector<uint32_t> group_;
-  std::vector<Ray> next_;
-  std::vector<SurfacePoint> hits_;
-  std::vector<ReachGrid::Lookup> near_;
-};
 
 void fillTable(VplTable& vpls, const PhotonSums& sums, const PhotonScatter& scatter) {
   beginLit(vpls, scatter.radius());
@@ -158,16 +74,18 @@ EnergyAccount accountOf(const PhotonSums& sums, const PhotonScatter& scatter, ui
 namespace {
 
 PhotonSums sumsOfShards(const EstimateInputs& in, const PhotonRun& run) {
-  const ShardSource& source = *in.resume.source;
+  const ShardSource& source = *in.controls.source;
   const size_t vpls = in.vpls.size(), groups = run.scatter.groups();
   PhotonSums sums = sumsOf(source.sums(kPhotonWork, integersFor(vpls, groups)), vpls, groups);
   sums.points = emitPointsOfShards(source, EmitPoints(in.vpls, run.emitPoints, mix64(run.key)));
   return sums;
 }
 
-// The start of a photon, with its share of the flux of its light.
+// The start of a photon, with its share of the flux of its light. `density` is relative to emission
+// by power.
 PhotonStart startOf(const LightSet& lights, const PhotonRun& run, uint64_t photon, Rng& rng,
-                    size_t& light) {
+                    size_t& light, float& density) {
+  density = 1.0f;
   if (!run.guide || !run.guide->guides()) {
     light = run.shares.lightOf(photon);
     PhotonStart start = lights.emit(light, rng);
@@ -178,9 +96,10 @@ PhotonStart startOf(const LightSet& lights, const PhotonRun& run, uint64_t photo
   const Emission e =
       run.guide->draw((static_cast<double>(photon) + double{rng.next()}) / total, rng);
   light = e.light;
+  density = run.guide->density(e);
   PhotonStart start = lights.emit(light, e.at);
-  start.flux *= static_cast<float>(
-      1.0 / (total * double{lights.pickProbability(light)} * double{run.guide->density(e)}));
+  start.flux *=
+      static_cast<float>(1.0 / (total * double{lights.pickProbability(light)} * double{density}));
   return start;
 }
 
@@ -189,8 +108,8 @@ PhotonStart startOf(const LightSet& lights, const PhotonRun& run, uint64_t photo
 PhotonSums tracePhotons(const EstimateInputs& in, const PhotonRun& run, const ScatterRule& rule) {
   const PhotonShares& shares = run.shares;
   const ProgressFn& progress = in.progress;
-  const Resume& resume = in.resume;
-  if (resume.source) return sumsOfShards(in, run);
+  const WorkControls& controls = in.controls;
+  if (controls.source) return sumsOfShards(in, run);
   const auto fresh = [&] {
     PhotonSums s;
     s.vpl.resize(in.vpls.size());
@@ -203,11 +122,11 @@ PhotonSums tracePhotons(const EstimateInputs& in, const PhotonRun& run, const Sc
     PhotonBatch batch(in.accel, run.scatter, rule);
     uint64_t photon = begin;
     batch.follow(
-        [&](PhotonWalk& walk, bool& hittable, uint32_t& group) {
+        [&](PhotonWalk& walk, bool& hittable, uint32_t& group, float& density) {
           if (photon == end) return false;
           Rng rng(run.key, photon);
           size_t light = 0;
-          const PhotonStart start = startOf(in.lights, run, photon++, rng, light);
+          const PhotonStart start = startOf(in.lights, run, photon++, rng, light, density);
           hittable = in.lights.hittable(light);
           group = in.lights.group(light);
           walk = PhotonWalk(start, run.maxBounces, rng);
@@ -216,9 +135,9 @@ PhotonSums tracePhotons(const EstimateInputs& in, const PhotonRun& run, const Sc
         },
         sums);
   };
-  std::vector<uint8_t> done = unitsToDo(rangesOf(shares.total()), resume.shard);
+  std::vector<uint8_t> done = unitsToDo(rangesOf(shares.total()), controls.shard);
   PhotonSums before = fresh();
-  if (!resume.state.empty()) decode(resume.state, done, before);
+  if (!controls.state.empty()) decode(controls.state, done, before);
   const auto photonsOf = [&](size_t range) {
     return std::min(kPhotonsPerRange, shares.total() - range * kPhotonsPerRange);
   };
@@ -231,7 +150,7 @@ PhotonSums tracePhotons(const EstimateInputs& in, const PhotonRun& run, const Sc
     return total;
   };
   forUnitsLeft(
-      done, resume,
+      done, controls,
       [&](size_t range) {
         const uint64_t begin = range * kPhotonsPerRange, count = photonsOf(range);
         trace(begin, begin + count, perThread.local());
@@ -239,9 +158,9 @@ PhotonSums tracePhotons(const EstimateInputs& in, const PhotonRun& run, const Sc
       },
       [&] { return encode(done, soFar()); });
   PhotonSums sums = soFar();
-  if (resume.sink) {
-    resume.sink->sums(kPhotonWork, integersOf(sums));
-    giveRecord(*resume.sink, kPhotonPointsWork, resume.shard.first, sums.points.winners());
+  if (controls.sink) {
+    controls.sink->sums(kPhotonWork, integersOf(sums));
+    giveRecord(*controls.sink, kPhotonPointsWork, controls.shard.first, sums.points.winners());
   }
   return sums;
 }
@@ -288,6 +207,8 @@ int64_t roundedAtRandom(double value, Vec3 at) {
 }  // namespace
 
 void PhotonScatter::deposit(uint32_t vpl, const PhotonHit& hit, Vec3 flux, PhotonSums& sums) const {
+  if (!emissionBalance_.empty() && !hit.onlyPhotons)
+    flux *= hit.density / (hit.density + emissionBalance_[vpl]);
   VplSum& s = sums.vpl[vpl];
   for (size_t c = 0; c < 3; ++c) {
     const int64_t units = fixed_.encode(double{flux[c]});
@@ -296,14 +217,14 @@ void PhotonScatter::deposit(uint32_t vpl, const PhotonHit& hit, Vec3 flux, Photo
     if (hit.onlyPhotons) addChecked(s.onlyPhotons[c], units);
   }
   const double relative = double{mean(flux)} * perPhotonPower_;
-  addChecked(s.squares, roundedAtRandom(relative * relative / squareUnit_, hit.point.position));
-  const double weight = emitPointWeights_.empty() || hit.onlyPhotons ? 1.0 : emitPointWeights_[vpl];
-  // In watts, as paths offer theirs.
-  sums.points.offer(vpl, double{mean(flux)} * weight, hit.point);
+  const double square = relative * relative / squareUnit_;
+  addChecked(s.squares, roundedAtRandom(square, hit.point.position));
+  addChecked(s.squaresByPower, roundedAtRandom(square * double{hit.density}, hit.point.position));
+  sums.points.offer(vpl, double{mean(flux)}, hit.point);  // in watts, as paths offer theirs
   if (groups_ > 0) {
     GroupSum& group = sums.groups[size_t{vpl} * groups_ + hit.group];
     for (size_t c = 0; c < 3; ++c) {
-      const int64_t units = fixed_.encode(double{flux[c]} * weight);
+      const int64_t units = fixed_.encode(double{flux[c]});
       addChecked(group.flux[c], units);
       if (hit.firstBounce) addChecked(group.firstBounce[c], units);
     }
@@ -329,7 +250,7 @@ EstimateResult estimateByPhotons(const EstimateInputs& in, const Values& options
   const PhotonScatter scatter(in, options.real32(kRadiusOption), shares.total());
   const auto maxBounces = static_cast<unsigned>(options[kPhotonBouncesOption]);
   const LearnedEmission emission = learnPhotonEmission(in, options, maxBounces, shares.total());
-  const PhotonRun run{streamKey(options[kSeedOption], Stream::Photons),
+  const PhotonRun run{streamKey(options[kSeedOption], RandomStream::Photons),
                       options[kEmitPointsOption],
                       maxBounces,
                       shares,

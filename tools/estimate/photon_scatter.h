@@ -38,6 +38,7 @@ struct PhotonHit {
   Vec3 flux;                      // flux that leaves the hit, W
   bool firstBounce;               // the photon came straight from a light
   bool onlyPhotons;               // paths from the hit cannot find this light
+  float density;                  // that of the photon's start, relative to emission by power
   uint32_t group;                 // light group
 };
 
@@ -46,11 +47,12 @@ class PhotonScatter {
  public:
   PhotonScatter(const EstimateInputs& in, float radius, uint64_t photons);
 
-  // Sets the weight of each VPL's hits as emission points. Light that only photons find has weight
-  // 1, and so have all hits unless weights are set.
-  void setEmitPointWeights(std::span<const double> weights) { emitPointWeights_ = weights; }
-  // deposit() adds all or a part of a hit's flux to one VPL. tally() records what became of a whole
-  // hit.
+  // Photons share the flux of VPL i with paths: their deposits weigh g / (g + balance[i]) by the
+  // density g of their start (PhotonMis). Light that only photons find weighs 1, and so does all
+  // unless a balance is set.
+  void setEmissionBalance(std::span<const float> balance) { emissionBalance_ = balance; }
+  // deposit() adds all or a part of a hit's flux, weighed, to one VPL. tally() records what became
+  // of a whole hit.
   void deposit(uint32_t vpl, const PhotonHit& hit, Vec3 flux, PhotonSums& sums) const;
   void tally(PhotonSums& sums, Tally t, Vec3 flux) const {
     addChecked(sums.tally[t], fixed_.encode(double{mean(flux)}));
@@ -59,15 +61,19 @@ class PhotonScatter {
   const FixedPoint& fixed() const { return fixed_; }
   double photonPower() const { return photonPower_; }  // mean power of a photon, W
   // Variance of the flux of a VPL if deposits are independent, W^2.
-  double variance(const VplSum& s) const {
-    return static_cast<double>(s.squares) * squareUnit_ * photonPower_ * photonPower_;
-  }
+  double variance(const VplSum& s) const { return squaresOf(s.squares); }
+  // The same if photons started in proportion to power.
+  double varianceByPower(const VplSum& s) const { return squaresOf(s.squaresByPower); }
   uint32_t groups() const { return groups_; }  // light groups; 0: not told apart
   // The flux of each VPL by light group.
   VplGroups groupFlux(const PhotonSums& sums) const;
-  float radius() const { return radius_; }  // reach, in units of each VPL's r_max
+  float radius() const { return radius_; }  // reach, in units of each VPL's radius
 
  private:
+  double squaresOf(int64_t units) const {
+    return static_cast<double>(units) * squareUnit_ * photonPower_ * photonPower_;
+  }
+
   float radius_;
   uint32_t groups_;
   double photonPower_;
@@ -76,7 +82,7 @@ class PhotonScatter {
   // Unit of VplSum::squares, which leaves room for the deposits of all photons.
   double squareUnit_;
   Coverage coverage_;
-  std::span<const double> emitPointWeights_;
+  std::span<const float> emissionBalance_;
 };
 
 // Deposits a hit; must be thread-safe. `rng` continues the photon's random numbers.
@@ -97,10 +103,10 @@ struct PhotonRun {
   const PhotonScatter& scatter;
   const EmissionGuide* guide = nullptr;  // null: photons by power
 };
-// Traces all photons and returns their sums. `in.resume` and `in.progress` are for this run alone;
-// progress counts photons.
+// Traces all photons and returns their sums. `in.controls` and `in.progress` are for this run
+// alone; progress counts photons.
 PhotonSums tracePhotons(const EstimateInputs& in, const PhotonRun& run, const ScatterRule& rule);
-// Resume state of a run that has traced all of its photons.
+// WorkControls state of a run that has traced all of its photons.
 std::string finishedState(const PhotonSums& sums, uint64_t photons);
 
 EnergyAccount accountOf(const PhotonSums& sums, const PhotonScatter& scatter, uint64_t photons);

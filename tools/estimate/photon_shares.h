@@ -7,7 +7,7 @@
 
 namespace bnvpl {
 
-// Photons [begin(l), begin(l + 1)) belong to light l.
+// Photons [first_[l], first_[l + 1]) belong to light l.
 class PhotonShares {
  public:
   // Numbers are proportional to power, rounded by the largest-remainder method. A light with power

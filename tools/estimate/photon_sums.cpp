@@ -1,6 +1,6 @@
 #include "tools/estimate/photon_sums.h"
 
-#include "core/resume.h"
+#include "core/work_controls.h"
 
 namespace bnvpl {
 
@@ -21,6 +21,7 @@ void VplSum::add(const VplSum& o) {
     addChecked(onlyPhotons[c], o.onlyPhotons[c]);
   }
   addChecked(squares, o.squares);
+  addChecked(squaresByPower, o.squaresByPower);
   photons += o.photons;
 }
 

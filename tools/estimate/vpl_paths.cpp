@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "core/resume.h"
-#include "tools/common/files/streams.h"
+#include "core/random_streams.h"
+#include "core/work_controls.h"
 
 namespace bnvpl {
 
@@ -38,12 +38,15 @@ PathSums VplPaths::tracePaths(uint32_t vpl, uint64_t points, EmitPoints& emitPoi
   r.points = points;
   Rng shift(settings_.key, vpl);
   const double x = double{shift.next()}, y = double{shift.next()};
+  PhotonMis photons;
+  if (!settings_.emissionBalance.empty() && settings_.emissionBalance[vpl] > 0.0f)
+    photons = {&in_.lights, 0.0f, 1.0f, nullptr, settings_.guide, settings_.emissionBalance[vpl]};
   for (uint64_t k = 0; k < points; ++k) {
     double atPoint = 0.0;
     Rng rng(random64(settings_.key, vpl, 1), k);
     ++r.rays;
     coverage_.forEachSurface(vpl, r2Sequence(k, x, y), [&](const SurfacePoint& hit, float area) {
-      const double light = add(hit, area, rng, r, byGroup);
+      const double light = add(hit, area, photons, rng, r, byGroup);
       emitPoints.offer(vpl, light, hit);
       atPoint += light;
     });
@@ -54,8 +57,8 @@ PathSums VplPaths::tracePaths(uint32_t vpl, uint64_t points, EmitPoints& emitPoi
 
 // Adds an estimate of the exitance at `hit` times the area that it represents. Returns the mean
 // over the channels.
-double VplPaths::add(const SurfacePoint& hit, float area, Rng& rng, PathSums& r,
-                     std::span<GroupPathSum> byGroup) const {
+double VplPaths::add(const SurfacePoint& hit, float area, const PhotonMis& photons, Rng& rng,
+                     PathSums& r, std::span<GroupPathSum> byGroup) const {
   const Vec3 weight(kPi * area / static_cast<float>(r.points * settings_.paths));
   Vec3 first, later;
   std::vector<Vec3> groups(2 * size_t{groups_});  // the same by group
@@ -63,7 +66,7 @@ double VplPaths::add(const SurfacePoint& hit, float area, Rng& rng, PathSums& r,
       groups_ > 0 ? OutgoingGroups{{&groups[0]}, {&groups[groups_]}} : OutgoingGroups{};
   const auto addPath = [&](const Bsdf& bsdf) {
     r.rays += 2 * addOutgoingRadiance(in_.accel, in_.lights, bsdf, weight, length_,
-                                      settings_.spatialLights, rng, first, later, sinks);
+                                      settings_.spatialLights, rng, first, later, sinks, photons);
   };
   // Exitance is the integral of the cosine times radiance over outgoing directions. Where the
   // albedo is constant, it is that of a diffuse surface of this albedo, as it is for photons. The
@@ -100,10 +103,10 @@ double VplPaths::add(const SurfacePoint& hit, float area, Rng& rng, PathSums& r,
 
 std::unique_ptr<const SpatialLightSampler> makeSpatialLightSampler(const EstimateInputs& in,
                                                                    uint64_t seed) {
-  if (in.resume.source) return nullptr;
+  if (in.controls.source) return nullptr;
   return std::make_unique<const SpatialLightSampler>(
       in.accel, in.lights, in.vpls.position, in.vpls.normal, in.vpls.radius,
-      streamKey(seed, Stream::PathLights), ProgressFn{});
+      streamKey(seed, RandomStream::PathLights), ProgressFn{});
 }
 
 PathResult tracePathsOfAll(const EstimateInputs& in, const VplPaths& vplPaths,
@@ -113,8 +116,8 @@ PathResult tracePathsOfAll(const EstimateInputs& in, const VplPaths& vplPaths,
                     std::vector<GroupPathSum>(points.size() * groups)};
   std::vector<PathSums>& sums = result.sums;
   const size_t perVpl = sums.empty() ? 0 : result.points.winners().size() / sums.size();
-  const Resume& resume = in.resume;
-  std::vector<uint8_t> done = unitsToDo(unitsOf(sums.size()), resume.shard);
+  const WorkControls& controls = in.controls;
+  std::vector<uint8_t> done = unitsToDo(unitsOf(sums.size()), controls.shard);
   const auto endOf = [&](size_t unit) { return std::min(sums.size(), (unit + 1) * kVplsPerUnit); };
   const auto reportUnit = [&](size_t unit) {
     uint64_t all = 0;
@@ -133,16 +136,16 @@ PathResult tracePathsOfAll(const EstimateInputs& in, const VplPaths& vplPaths,
     const size_t begin = unit * kVplsPerUnit;
     return std::span(result.groups).subspan(begin * groups, (endOf(unit) - begin) * groups);
   };
-  if (resume.source) {
+  if (controls.source) {
     for (size_t unit = 0; unit < done.size(); ++unit) {
-      takeRecord(*resume.source, kPathWork, unit, ofUnit(unit));
-      takeRecord(*resume.source, kPathPointsWork, unit, pointsOfUnit(unit));
-      if (groups > 0) takeRecord(*resume.source, kPathGroupsWork, unit, groupsOfUnit(unit));
+      takeRecord(*controls.source, kPathWork, unit, ofUnit(unit));
+      takeRecord(*controls.source, kPathPointsWork, unit, pointsOfUnit(unit));
+      if (groups > 0) takeRecord(*controls.source, kPathGroupsWork, unit, groupsOfUnit(unit));
     }
     return result;
   }
-  if (!resume.state.empty()) {
-    std::string_view bytes = resume.state;
+  if (!controls.state.empty()) {
+    std::string_view bytes = controls.state;
     takeArray(bytes, done);
     takeArray(bytes, sums);
     takeArray(bytes, result.points.winners());
@@ -153,7 +156,7 @@ PathResult tracePathsOfAll(const EstimateInputs& in, const VplPaths& vplPaths,
     if (done[unit] == 1) reportUnit(unit);
   }
   forUnitsLeft(
-      done, resume,
+      done, controls,
       [&](size_t unit) {
         for (size_t i = unit * kVplsPerUnit; i < endOf(unit); ++i)
           sums[i] = vplPaths.tracePaths(static_cast<uint32_t>(i), points[i], result.points,
@@ -161,21 +164,20 @@ PathResult tracePathsOfAll(const EstimateInputs& in, const VplPaths& vplPaths,
         if (in.progress) reportUnit(unit);
       },
       [&] { return encode(done, result); });
-  for (size_t unit = 0; resume.sink && unit < done.size(); ++unit) {
-    if (!resume.shard.has(unit)) continue;
-    giveRecord(*resume.sink, kPathWork, unit, ofUnit(unit));
-    giveRecord(*resume.sink, kPathPointsWork, unit, pointsOfUnit(unit));
-    if (groups > 0) giveRecord(*resume.sink, kPathGroupsWork, unit, groupsOfUnit(unit));
+  for (size_t unit = 0; controls.sink && unit < done.size(); ++unit) {
+    if (!controls.shard.has(unit)) continue;
+    giveRecord(*controls.sink, kPathWork, unit, ofUnit(unit));
+    giveRecord(*controls.sink, kPathPointsWork, unit, pointsOfUnit(unit));
+    if (groups > 0) giveRecord(*controls.sink, kPathGroupsWork, unit, groupsOfUnit(unit));
   }
   return result;
 }
 
-void addGroupsTo(VplGroups& groups, const PathResult& paths, std::span<const double> share) {
+void addGroupsTo(VplGroups& groups, const PathResult& paths) {
   for (size_t i = 0; i < paths.groups.size(); ++i) {
-    const double times = share.empty() ? 1.0 : share[i / groups.groups];
     for (size_t c = 0; c < 3; ++c) {
-      groups.flux[i][c] += static_cast<float>(times * paths.groups[i].flux[c]);
-      groups.firstBounceFlux[i][c] += static_cast<float>(times * paths.groups[i].firstBounce[c]);
+      groups.flux[i][c] += static_cast<float>(paths.groups[i].flux[c]);
+      groups.firstBounceFlux[i][c] += static_cast<float>(paths.groups[i].firstBounce[c]);
     }
   }
 }

@@ -30,7 +30,8 @@ struct PathSums {  // without padding, as its bytes are saved
   uint64_t points = 0, paths = 0, rays = 0, nonFinite = 0;
 
   double meanFlux() const { return (flux[0] + flux[1] + flux[2]) / 3.0; }
-  double variance() const;  // variance of meanFlux() if points were independent; 0 for a single one
+  // Variance of meanFlux(), W^2, if points were independent; flux^2 for a single one, 0 for none.
+  double variance() const;
 };
 
 // The flux of one light group, W.
@@ -43,9 +44,13 @@ class VplPaths {
   struct Settings {
     uint64_t key, paths;                                 // paths from each point
     unsigned maxBounces;                                 // at least 1, the bounce at the VPL
-    float radius;                                        // reach in units of each VPL's r_max
+    float radius;                                        // reach in units of each VPL's radius
     size_t emitPoints;                                   // per VPL
     const SpatialLightSampler* spatialLights = nullptr;  // learned distribution for light sampling
+    // That of each VPL with the photons from `guide` that share its flux (PhotonMis); empty: none
+    // do.
+    std::span<const float> emissionBalance = {};
+    const EmissionGuide* guide = nullptr;
   };
   VplPaths(const EstimateInputs& in, const Settings& settings)
       : in_(in),
@@ -65,7 +70,7 @@ class VplPaths {
   uint64_t pathsOf(uint64_t points) const { return points * settings_.paths; }
 
  private:
-  double add(const SurfacePoint& hit, float area, Rng& rng, PathSums& r,
+  double add(const SurfacePoint& hit, float area, const PhotonMis& photons, Rng& rng, PathSums& r,
              std::span<GroupPathSum> byGroup) const;
 
   const EstimateInputs& in_;
@@ -86,13 +91,13 @@ struct PathResult {
   std::vector<GroupPathSum> groups;  // those of each VPL, row after row
 };
 
-// Estimates the flux of every VPL i from points[i] points. `in.resume` and `in.progress` are for
+// Estimates the flux of every VPL i from points[i] points. `in.controls` and `in.progress` are for
 // this work alone; progress counts paths.
 PathResult tracePathsOfAll(const EstimateInputs& in, const VplPaths& vplPaths,
                            std::span<const uint64_t> points);
-// Adds the flux by light group, times `share` of each VPL.
-void addGroupsTo(VplGroups& groups, const PathResult& paths, std::span<const double> share = {});
-// Resume state of tracePathsOfAll() when all of its work is done.
+// Adds the flux by light group.
+void addGroupsTo(VplGroups& groups, const PathResult& paths);
+// WorkControls state of tracePathsOfAll() when all of its work is done.
 std::string finishedState(const PathResult& result);
 
 }  // namespace bnvpl

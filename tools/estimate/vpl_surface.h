@@ -10,9 +10,9 @@
 
 namespace bnvpl {
 
-inline constexpr RealOption kRadiusOption = inTopic(
-    Topic::Quality,
-    realOption("radius", "1.7", 0.01, 100, "r_max", "distance within which a VPL collects light"));
+inline constexpr RealOption kRadiusOption =
+    inTopic(Topic::Quality, realOption("radius", "1.7", 0.01, 100, "radii of the VPL",
+                                       "distance within which a VPL collects light"));
 // Reach of each VPL, world units.
 std::vector<float> reachOf(const VplTable& vpls, float radius);
 

@@ -21,9 +21,9 @@ std::vector<fs::path> mergeEstimated(ShardSet& shards, const MergeOutput& output
   const Accelerator accel(scene, processorOf(whole.run));
   const LightSet lights(accel);
   const ShardSource source = shards.source();
-  Resume resume;
-  resume.source = &source;
-  EstimateResult result = estimate(vpls, accel, lights, options, {}, resume);
+  WorkControls controls;
+  controls.source = &source;
+  EstimateResult result = estimate(vpls, accel, lights, options, {}, controls);
   result.table.provenance = extendProvenance(vpls.provenance, whole.run);
   requireSound(result.table);
   writeVpl(files.add(output.product), result.table);

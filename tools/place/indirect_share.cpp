@@ -4,9 +4,9 @@
 #include <array>
 
 #include "core/parallel.h"
+#include "core/random_streams.h"
 #include "core/sampling.h"
 #include "formats/vpl/vpl_layout.h"
-#include "tools/common/files/streams.h"
 #include "transport/camera.h"
 #include "transport/outgoing_radiance.h"
 
@@ -69,7 +69,7 @@ double indirectShare(const PlaceInputs& in, uint64_t seed) {
   double largest = 0.0;
   for (size_t i = 0; i < asked; ++i) {
     const size_t v = i * views.size() / asked;
-    const uint64_t key = random64(streamKey(seed, Stream::IndirectShare), v, 0);
+    const uint64_t key = random64(streamKey(seed, RandomStream::IndirectShare), v, 0);
     largest = std::max(largest, shareOfView(in, views[v], key));
   }
   return largest;

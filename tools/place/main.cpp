@@ -51,13 +51,13 @@ int runPlace(const Request& request, const ToolOptions& tool) {
                             {{"scene", hashText(scene.contentHash)}}, tool.processor);
   if (method.forView) recordViews(views, record);
   const auto whole = [&](const StageTask& task) {
-    PlaceResult placed = place(inputs, options, task.progress, task.resume);
+    PlaceResult placed = place(inputs, options, task.progress, task.controls);
     placed.table.provenance = extendProvenance("", record);
     writeVpl(task.files.add(request.output), placed.table);
     reportPlaced(placed, task.summary);
   };
   const auto part = [&](const StageTask& task) -> ShardRun {
-    reportPlaced(placeShard(inputs, options, request.shardSpare, task.resume, task.progress),
+    reportPlaced(placeShard(inputs, options, request.shardSpare, task.controls, task.progress),
                  task.summary);
     return {record, request.given, Json::object(), request.command, ""};
   };

@@ -38,8 +38,9 @@ struct JoinedRows {
 PlaceResult collectRows(const std::string& scene, const JoinedRows& whole,
                         const ProgressFn& progress, const TracePaths& tracePaths);
 // The same in shards, whose units are chunks; see placeShard() and joinPlaced() in place.h.
-PlaceResult traceShard(const std::string& scene, uint64_t count, double spare, const Resume& resume,
-                       const ProgressFn& progress, const TracePaths& tracePaths);
+PlaceResult traceShard(const std::string& scene, uint64_t count, double spare,
+                       const WorkControls& controls, const ProgressFn& progress,
+                       const TracePaths& tracePaths);
 PlaceResult joinShards(const JoinedRows& whole, const ShardSource& source,
                        const std::function<void(uint64_t unit)>& endedEarly);
 

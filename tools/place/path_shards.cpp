@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/resume.h"
+#include "core/work_controls.h"
 #include "tools/place/row_join.h"
 
 namespace bnvpl {
@@ -28,13 +28,13 @@ double squaresOf(const PathRows& chunk) {
 // State of a shard: takes its chunks in order and tells how many are left.
 class ShardTrace {
  public:
-  ShardTrace(uint64_t count, double spare, const Resume& resume)
-      : resume_(resume),
+  ShardTrace(uint64_t count, double spare, const WorkControls& controls)
+      : controls_(controls),
         part_(static_cast<double>(count) * static_cast<double>(shard().parts()) /
               static_cast<double>(shard().of)),
         wanted_(part_ * (1.0 + spare)),
         max_(static_cast<double>(count)) {
-    for (std::string_view bytes = resume.state; !bytes.empty();) {
+    for (std::string_view bytes = controls.state; !bytes.empty();) {
       std::array<uint64_t, 1> size{};
       takeArray(bytes, size);
       std::string record(std::min<size_t>(size[0], bytes.size()), '\0');
@@ -42,7 +42,7 @@ class ShardTrace {
       take(decodeRows(record, unit() * kPathsPerChunk), record);
     }
   }
-  const Shard& shard() const { return resume_.shard; }
+  const Shard& shard() const { return controls_.shard; }
   uint64_t unit(uint64_t ahead = 0) const { return shard().unit(chunks_ + ahead); }
   uint64_t rowsOfPart() const { return static_cast<uint64_t>(std::ceil(part_)); }
   // Paths that all shards together have traced when each has as many chunks as this one.
@@ -63,13 +63,13 @@ class ShardTrace {
   }
   void take(const PathRows& chunk) { take(chunk, encode(chunk, unit() * kPathsPerChunk)); }
   void pause() const {
-    if (rowsLeft() > 0.0 && resume_.pause && resume_.pause()) resume_.save(state_);
+    if (rowsLeft() > 0.0 && controls_.pause && controls_.pause()) controls_.save(state_);
   }
 
  private:
   void take(const PathRows& chunk, const std::string& record) {
-    resume_.sink->record(kWork, unit(), record);
-    if (resume_.pause) {
+    controls_.sink->record(kWork, unit(), record);
+    if (controls_.pause) {
       appendArray(state_, std::array<uint64_t, 1>{record.size()});
       state_ += record;
     }
@@ -79,7 +79,7 @@ class ShardTrace {
     ++chunks_;
   }
 
-  const Resume& resume_;
+  const WorkControls& controls_;
   double part_, wanted_, max_, squares_ = 0.0;
   uint64_t chunks_ = 0;
   PlaceResult result_;
@@ -88,9 +88,10 @@ class ShardTrace {
 
 }  // namespace
 
-PlaceResult traceShard(const std::string& scene, uint64_t count, double spare, const Resume& resume,
-                       const ProgressFn& progress, const TracePaths& tracePaths) {
-  ShardTrace trace(count, spare, resume);
+PlaceResult traceShard(const std::string& scene, uint64_t count, double spare,
+                       const WorkControls& controls, const ProgressFn& progress,
+                       const TracePaths& tracePaths) {
+  ShardTrace trace(count, spare, controls);
   if (progress) progress(trace.soFar().rows);
   Wave wave;
   while (trace.rowsLeft() > 0.0) {

@@ -48,19 +48,19 @@ PlaceResult joinRows(const Values& options, const ViewTurns& turns, const ShardS
 }
 
 PlaceResult traceRows(const PlaceInputs& in, const Values& options, double spare,
-                      const Resume& resume, const ProgressFn& progress) {
-  return traceShard(in.accel.scene().name(), options[kPlaceCountOption], spare, resume, progress,
+                      const WorkControls& controls, const ProgressFn& progress) {
+  return traceShard(in.accel.scene().name(), options[kPlaceCountOption], spare, controls, progress,
                     placeMethod(options).make(in, options));
 }
 
 // A run that can be interrupted is traced as a single shard, whose rows are kept in memory.
 PlaceResult placeInPieces(const PlaceInputs& in, const Values& options, const ProgressFn& progress,
-                          Resume resume) {
+                          WorkControls controls) {
   std::vector<std::string> records;
   const ShardSink sink{
       [&](std::string_view, uint64_t, std::string_view bytes) { records.emplace_back(bytes); }, {}};
-  resume.sink = &sink;
-  traceRows(in, options, 0.0, resume, progress);
+  controls.sink = &sink;
+  traceRows(in, options, 0.0, controls, progress);
   const ShardSource source{[&](std::string_view, uint64_t unit) -> std::optional<std::string> {
                              if (unit >= records.size()) return {};
                              return std::move(records[unit]);
@@ -82,19 +82,19 @@ PlaceResult placeAtOnce(const PlaceInputs& in, const Values& options, const Prog
 }  // namespace
 
 PlaceResult place(const PlaceInputs& in, const Values& options, const ProgressFn& progress,
-                  const Resume& resume) {
-  PlaceResult result = resume.pause ? placeInPieces(in, options, progress, resume)
-                                    : placeAtOnce(in, options, progress);
+                  const WorkControls& controls) {
+  PlaceResult result = controls.pause ? placeInPieces(in, options, progress, controls)
+                                      : placeAtOnce(in, options, progress);
   result.table.indirectShare = indirectShareFor(in, options);
   result.table.sceneHash = in.accel.scene().contentHash;
   return result;
 }
 
 PlaceResult placeShard(const PlaceInputs& in, const Values& options, double spare,
-                       const Resume& resume, const ProgressFn& progress) {
-  PlaceResult counts = traceRows(in, options, spare, resume, progress);
-  if (placeMethod(options).forView && resume.shard.has(0))
-    giveIndirectShare(*resume.sink, indirectShareFor(in, options));
+                       const WorkControls& controls, const ProgressFn& progress) {
+  PlaceResult counts = traceRows(in, options, spare, controls, progress);
+  if (placeMethod(options).forView && controls.shard.has(0))
+    giveIndirectShare(*controls.sink, indirectShareFor(in, options));
   return counts;
 }
 

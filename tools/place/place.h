@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "core/progress.h"
-#include "core/resume.h"
+#include "core/work_controls.h"
 #include "formats/vpl/vpl_table.h"
 #include "scene/scene.h"
 #include "tools/common/stage/method.h"
@@ -47,9 +47,9 @@ struct PlaceInputs {
   const PlaceViews& views;
 };
 
+struct PathRows;
 // Traces the paths [begin, begin + kPathsPerChunk) into an empty chunk (path_rows.h). Must be
 // thread-safe.
-struct PathRows;
 using TracePaths = std::function<void(uint64_t begin, PathRows& chunk)>;
 
 // Cut: there are exactly `count` rows, and the last path may have lost some. Whole: a path that
@@ -79,14 +79,14 @@ const PlaceMethod& placeMethod(const Values& options);
 // a byte. Throws InputError where the scene yields too few VPLs in effortFor(count) paths.
 // `progress` counts VPLs.
 PlaceResult place(const PlaceInputs& in, const Values& options, const ProgressFn& progress = {},
-                  const Resume& resume = {});
+                  const WorkControls& controls = {});
 
-// Traces the paths of resume's shard and gives their rows to its sink; the result has only counts.
-// How many paths yield the count is not known beforehand. So a shard goes on until it has its part
-// of the rows, multiplied by 1 + `spare`, and six standard deviations more, to make up for shards
-// that find fewer.
+// Traces the paths of the shard in `controls` and gives their rows to its sink; the result has only
+// counts. How many paths yield the count is not known beforehand. So a shard goes on until it has
+// its part of the rows, multiplied by 1 + `spare`, and six standard deviations more, to make up for
+// shards that find fewer.
 PlaceResult placeShard(const PlaceInputs& in, const Values& options, double spare,
-                       const Resume& resume, const ProgressFn& progress = {});
+                       const WorkControls& controls, const ProgressFn& progress = {});
 // Joins the rows of all shards to the result of place(). If there are too few, `endedEarly` is
 // called with the first unit that is missing; it must throw.
 PlaceResult joinPlaced(const Values& options, uint64_t sceneHash, const ViewTurns& turns,

@@ -21,7 +21,7 @@ std::string textOf(const std::vector<uint64_t>& rowsOfView) {
 void reportPlaced(const PlaceResult& placed, Summary& summary) {
   summary.add(
       "placed", placed.rows,
-      "placed " + std::to_string(placed.rows) + " on " + std::to_string(placed.paths) + " paths");
+      "placed " + std::to_string(placed.rows) + " from " + std::to_string(placed.paths) + " paths");
   if (!placed.rowsOfView.empty())
     summary.add("placed_of_views", placed.rowsOfView, textOf(placed.rowsOfView));
   if (placed.table.size() > 0) {

@@ -64,8 +64,8 @@ Cost costOfRendering(const Accelerator& accel, const LightSet& lights, const Vpl
   // Photons go in rounds of as many samples as 64 tiles have; some of each round are to be tried.
   if (integrator.tracePhotons) units.fewest *= 1.0 + 64.0 / double(tried);
   Cost cost = costOfUnits(
-      [&](const Resume& resume) {
-        renderSamples(accel, integrator, plain, static_cast<uint32_t>(tried), progress, resume);
+      [&](const WorkControls& controls) {
+        renderSamples(accel, integrator, plain, static_cast<uint32_t>(tried), progress, controls);
       },
       trial, units);
   constexpr double kDevelopS = 5e-7;  // a pixel, its file included (measured)

@@ -34,7 +34,7 @@ void forEachCounter(const Fn& fn) {
   ofSlot(gatherMethods(), kGatherSlot.name, "gather");
   ofSlot(compensateMethods(), kCompensateSlot.name, "compensation");
   for (const std::string_view name : VplKinds::names) {
-    for (const Counter& c : lightCounters(lightKindNamed(name)))
+    for (const Counter& c : lightCounters(vplKindNamed(name)))
       fn(c, "--light " + std::string(name), "light");
   }
 }
@@ -72,7 +72,7 @@ std::span<const Layer> counterLayersOf(const Values& options) {
     for (const GatherMethod* gather : gatherMethods()) {
       for (const CompensateMethod* compensate : compensateMethods()) {
         for (const std::string_view name : VplKinds::names) {
-          const VplKind light = lightKindNamed(name);
+          const VplKind light = vplKindNamed(name);
           for (const Counter& c : countersOf(*gather, *compensate, light)) {
             std::vector<Layer>& own = layers[{gather, compensate, light}];
             own.push_back(counterLayer(c, own.size()));

@@ -46,7 +46,7 @@ int runRender(StageRequest& request, const RenderFiles& files, const ToolOptions
     return json;
   };
   const auto result = [&](const StageTask& t, const FilmPreview& preview) {
-    return render(accel, lights, lit, options, t.progress, t.resume, preview, run.startS());
+    return render(accel, lights, lit, options, t.progress, t.controls, preview, run.startS());
   };
   const ImagePaths images{request.output, files.png};
   const auto whole = [&](const StageTask& task) {

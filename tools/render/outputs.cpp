@@ -271,10 +271,11 @@ void reportRender(const RenderResult& result, const Values& options, Summary& su
                 {{"by_power", caustics.useful.byPower}, {"guided", caustics.useful.guided}}, line);
   }
   if (caustics.lamps > 0) {
-    std::snprintf(line, sizeof line,
-                  "caustics of %zu of %zu lamps by near-field rays alone: too few of their photons "
-                  "come into view",
-                  caustics.sparseLamps, caustics.lamps);
+    std::snprintf(
+        line, sizeof line,
+        "caustics of %zu of %zu lights come from near-field rays alone: too few of their photons "
+        "come into view",
+        caustics.sparseLamps, caustics.lamps);
     summary.add("lamps", caustics.lamps);
     summary.add("lamps_without_photons", caustics.sparseLamps,
                 caustics.sparseLamps > 0 ? line : "");

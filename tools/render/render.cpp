@@ -293,18 +293,18 @@ Integrator makeIntegrator(const Accelerator& accel, const LightSet& lights, cons
 }
 
 void renderSamples(const Accelerator& accel, const Integrator& integrator, const Values& options,
-                   uint32_t spp, const ProgressFn& progress, const Resume& resume) {
+                   uint32_t spp, const ProgressFn& progress, const WorkControls& controls) {
   FilmOptions film = filmOptionsOf(options);
   film.spp = spp;
   film.groups = lightGroupsOf(options, accel.scene());
   // Layers of first hits take next to no time.
   std::erase_if(film.layers, [](const Layer* l) { return l->firstHit != FirstHit::None; });
   FilmStats stats;
-  renderFilm(accel.scene(), integrator, film, stats, progress, resume);
+  renderFilm(accel.scene(), integrator, film, stats, progress, controls);
 }
 
 RenderResult render(const Accelerator& accel, const LightSet& lights, const VplTable& lit,
-                    const Values& options, const ProgressFn& progress, const Resume& resume,
+                    const Values& options, const ProgressFn& progress, const WorkControls& controls,
                     const FilmPreview& preview, double startS) {
   FilmOptions film = filmOptionsOf(options);
   film.crop = cropOf(options, accel.scene().film);
@@ -323,10 +323,10 @@ RenderResult render(const Accelerator& accel, const LightSet& lights, const VplT
   if (auto budget = budgetOf(options)) {
     budget->startS = startS;
     result.image = renderPasses(accel.scene(), integrator, film, *budget, result.stats,
-                                result.passes.emplace(), progress, resume, preview);
+                                result.passes.emplace(), progress, controls, preview);
   } else {
     result.image =
-        renderFilm(accel.scene(), integrator, film, result.stats, progress, resume, preview);
+        renderFilm(accel.scene(), integrator, film, result.stats, progress, controls, preview);
   }
   result.image.camera = imageCameraOf(accel.scene());
   addFirstHitAttributes(accel.scene(), film.layers, result.image.attributes);

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "core/progress.h"
-#include "core/resume.h"
+#include "core/work_controls.h"
 #include "formats/image/image.h"
 #include "tools/render/film/passes.h"
 #include "tools/render/integrator/integrator.h"
@@ -59,7 +59,7 @@ Integrator makeIntegrator(const Accelerator& accel, const LightSet& lights, cons
                           CostTrial* trial = nullptr);
 // Renders only samples, `spp` per pixel, for a cost estimate.
 void renderSamples(const Accelerator& accel, const Integrator& integrator, const Values& options,
-                   uint32_t spp, const ProgressFn& progress, const Resume& resume);
+                   uint32_t spp, const ProgressFn& progress, const WorkControls& controls);
 
 // Joins the shards of an image. `film` and `groups` are those of the shards. The result's counts of
 // VPLs stay 0.
@@ -71,7 +71,7 @@ RenderResult joinRendered(const Film& film, const Values& options, const ShardSo
 // if there is a budget. --time counts from `startS`, of nowS().
 RenderResult render(const Accelerator& accel, const LightSet& lights, const VplTable& lit,
                     const Values& options, const ProgressFn& progress = {},
-                    const Resume& resume = {}, const FilmPreview& preview = {},
+                    const WorkControls& controls = {}, const FilmPreview& preview = {},
                     double startS = nowS());
 
 }  // namespace bnvpl

@@ -61,16 +61,18 @@ struct SampleGroups {
   uint32_t count = 0;
   static constexpr uint32_t kKinds = 3;
 
-  GroupSink emission() const { return {sums}; }
-  GroupSink direct() const { return sinkOf(1); }    // without `emission`
-  GroupSink indirect() const { return sinkOf(2); }  // without photons
+  LightGroupSink emission() const { return {sums}; }
+  LightGroupSink direct() const { return sinkOf(1); }    // without `emission`
+  LightGroupSink indirect() const { return sinkOf(2); }  // without photons
   // Scales emission and direct light.
   void scaleDirect(float factor) const {
     for (uint32_t k = 0; sums && k < 2 * count; ++k) sums[k] *= factor;
   }
 
  private:
-  GroupSink sinkOf(uint32_t kind) const { return {sums ? sums + size_t{kind} * count : nullptr}; }
+  LightGroupSink sinkOf(uint32_t kind) const {
+    return {sums ? sums + size_t{kind} * count : nullptr};
+  }
 };
 
 // One sample of a pixel.

@@ -121,15 +121,15 @@ Bsdf::Evaluated Bsdf::evaluate(LobeGroup group, Vec3 wi, Wanted wanted) const {
     }
     const Vec3 local = locals[s.frame];
     const bool within = local.z * ng > 0.0f;
-    const bool byEye = photons && ng > 0.0f && frame.ns != point_.ng;
-    if (byEye) {
+    const bool bentForCamera = photons && ng > 0.0f && frame.ns != point_.ng;
+    if (bentForCamera) {
       sum.value += s.weight * adjointValue(s, wi);
       sum.pdf += s.share * cosineShare(s) * pdfCosineHemisphere(ng);
     }
     if (!within) continue;
     std::visit(
         [&](const auto& l) {
-          if (!byEye && wanted != Wanted::OnlyPdf) {
+          if (!bentForCamera && wanted != Wanted::OnlyPdf) {
             const float cosine = photons ? photonCosine(frame.z, wi) : std::fabs(local.z);
             sum.value += s.weight * l.value(frame.wo, local, transport) * (cosine * coat(s, wi));
           }

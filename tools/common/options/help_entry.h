@@ -20,7 +20,7 @@ struct HelpEntry {
 
 // "COUNT", "on|off": the placeholder of the option's value.
 std::string typeOf(const Option& option);
-// "how far a VPL reaches for light (r_max, 0.01 to 100)"
+// "how far a VPL reaches for light (radii of the VPL, 0.01 to 100)"
 std::string helpOf(const Option& option);
 
 HelpEntry entryOf(const Option& option);

@@ -90,7 +90,7 @@ Checkpoint::Checkpoint(CheckpointOptions options, Json run)
   }
 }
 
-Resume Checkpoint::resume() {
+WorkControls Checkpoint::controls() {
   if (options_.file.empty()) return {};
   defer_.emplace();
   return {std::move(earlier_), [this] { return due(); },

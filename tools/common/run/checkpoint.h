@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "core/resume.h"
+#include "core/work_controls.h"
 #include "tools/common/run/interrupt.h"
 #include "tools/common/run/run_tool.h"
 
@@ -32,7 +32,7 @@ class Checkpoint {
   // For the stage: the saved state, and pauses every options.everyS seconds and at an interrupt.
   // After an interrupt save() throws Interrupted once the state is on disk. Empty without
   // --checkpoint. Must not outlive this object.
-  Resume resume();
+  WorkControls controls();
 
   // Removes the file once the output is written, unless it is not a checkpoint; ends the deferral
   // of interrupts.

@@ -24,23 +24,23 @@ struct TriedUnits {
   double cpuS = 0.0, units = 0.0;
 };
 
-TriedUnits tryUnits(const std::function<void(const Resume&)>& part, const Shard& shard,
+TriedUnits tryUnits(const std::function<void(const WorkControls&)>& part, const Shard& shard,
                     CostTrial& trial, bool apart) {
   std::atomic<uint64_t> units{0};
   const ShardSink nowhere{[](std::string_view, uint64_t, std::string_view) {},
                           [](std::string_view, std::span<const int64_t>) {}};
-  Resume resume;
-  resume.shard = shard;
-  resume.sink = &nowhere;
-  resume.trial = &trial;
-  resume.pause = [&] {  // called once after each unit
+  WorkControls controls;
+  controls.shard = shard;
+  controls.sink = &nowhere;
+  controls.trial = &trial;
+  controls.pause = [&] {  // called once after each unit
     units.fetch_add(1, std::memory_order_relaxed);
     return false;
   };
-  resume.save = [](const std::string&) {};
+  controls.save = [](const std::string&) {};
   trial.share = apart ? 1.0 : static_cast<double>(shard.parts()) / static_cast<double>(shard.of);
   const double before = cpuSecondsSoFar() + trial.skippedCpuS();
-  part(resume);
+  part(controls);
   return {cpuSecondsSoFar() + trial.skippedCpuS() - before, static_cast<double>(units)};
 }
 
@@ -83,7 +83,7 @@ Cost Cost::ofShard(const std::optional<Shard>& shard) const {
   return cost;
 }
 
-Cost costOfUnits(const std::function<void(const Resume&)>& part, CostTrial& trial,
+Cost costOfUnits(const std::function<void(const WorkControls&)>& part, CostTrial& trial,
                  const UnitsToTry& units) {
   constexpr uint64_t kNone = uint64_t{1} << 40;  // more parts than any work has units
   const double startS = cpuSecondsSoFar() + trial.skippedCpuS();

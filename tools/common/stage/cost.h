@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "core/cost_trial.h"
-#include "core/resume.h"
+#include "core/work_controls.h"
 #include "tools/common/run/run_tool.h"
 
 namespace bnvpl {
@@ -45,10 +45,10 @@ struct UnitsToTry {
   double fewest = 32.0;  // min number of units, since their costs differ
   bool apart = false;    // the work will run in shards, where neighbouring units share no results
 };
-// Estimates work that consists of units. `part` does the units of resume.shard: first none, then
+// Estimates work that consists of units. `part` does the units of controls.shard: first none, then
 // more and more, until their CPU time stands out from the rest or reaches seconds. Preparations
-// that use resume.trial count in full.
-Cost costOfUnits(const std::function<void(const Resume&)>& part, CostTrial& trial,
+// that use controls.trial count in full.
+Cost costOfUnits(const std::function<void(const WorkControls&)>& part, CostTrial& trial,
                  const UnitsToTry& units = {});
 
 // Estimates work on rows. `part` does it for a number of rows: `first`, then more and more, until

@@ -93,7 +93,7 @@ ShardOutput::ShardOutput(AtomicFile& file, const Shard& shard)
               writer_.sums(work, sums);
             }} {}
 
-Resume ShardOutput::only(Resume whole) const {
+WorkControls ShardOutput::only(WorkControls whole) const {
   whole.shard = shard_;
   whole.sink = &sink_;
   return whole;

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "core/resume.h"
+#include "core/work_controls.h"
 #include "formats/shard/shard_file.h"
 #include "tools/common/run/run_tool.h"
 #include "tools/common/stage/shard_info.h"
@@ -34,7 +34,7 @@ class ShardOutput {
 
   // Restricts `whole` to the units of this shard, whose results go to the file. Must not outlive
   // this object.
-  Resume only(Resume whole) const;
+  WorkControls only(WorkControls whole) const;
   // Completes the file, which the caller commits, and adds the shard to the summary.
   void finish(const ShardRun& run, Summary& summary);
 

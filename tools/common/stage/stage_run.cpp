@@ -50,10 +50,10 @@ int StageRun::make(const StageWork& work) {
     if (shard) {
       ShardOutput output(files.add(request_.output), *shard);
       output.finish(
-          work.part({output.only(checkpoint.resume()), meter.callback(), files, summary_}),
+          work.part({output.only(checkpoint.controls()), meter.callback(), files, summary_}),
           summary_);
     } else {
-      work.whole({checkpoint.resume(), meter.callback(), files, summary_});
+      work.whole({checkpoint.controls(), meter.callback(), files, summary_});
     }
   }
   addDepfile(files, tool_.depfile, request_.output, work.read);

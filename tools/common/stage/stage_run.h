@@ -41,7 +41,7 @@ void addStageRequest(CLI::App& cli, const StageSpec& spec, StageRequest& request
 
 // What the function of a stage needs from its main.
 struct StageTask {
-  Resume resume;
+  WorkControls controls;
   ProgressFn progress;
   OutputSet& files;
   Summary& summary;
@@ -55,8 +55,8 @@ struct StageWork {
   std::vector<fs::path> read;  // for the depfile
   // Makes the whole result and writes it to the output.
   std::function<void(const StageTask&)> whole;
-  // Makes the part of --shard, whose records go to the sink of the task's `resume`, and tells whose
-  // work it is.
+  // Makes the part of --shard, whose records go to the sink of the task's `controls`, and tells
+  // whose work it is.
   std::function<ShardRun(const StageTask&)> part = {};
 };
 

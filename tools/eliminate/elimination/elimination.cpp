@@ -13,7 +13,8 @@ namespace bnvpl::methods::eliminate::elimination {
 
 namespace {
 
-// In 40 bits, weights of larger exponents would vanish within the distance of neighbours.
+// Pair weights have 40 bits (ConflictGraph): with larger exponents those of typical neighbours
+// would round to 0.
 constexpr auto kAlphaOption = realOption("alpha", "8", 0.1, 16, "", "exponent of the pair weights");
 // With limiting, all pairs nearer than a large part of r_max have the same weight. An area
 // overestimated by 1.4 then keeps near-duplicates; without limiting it is harmless.

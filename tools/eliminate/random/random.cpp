@@ -5,8 +5,8 @@
 #include <array>
 
 #include "core/parallel.h"
+#include "core/random_streams.h"
 #include "spatial/morton_order.h"
-#include "tools/common/files/streams.h"
 #include "tools/eliminate/eliminate.h"
 #include "tools/eliminate/radii.h"
 
@@ -18,7 +18,7 @@ constexpr auto kOptions = joined(kRadiusOptions, optionTable(kSeedOption));
 
 // The choice depends only on the seed and the row numbers.
 std::vector<uint32_t> randomRows(size_t candidates, size_t count, uint64_t seed) {
-  const uint64_t key = streamKey(seed, Stream::Eliminate);
+  const uint64_t key = streamKey(seed, RandomStream::Eliminate);
   std::vector<std::pair<uint64_t, uint32_t>> keys(candidates);
   parallelFor(candidates, 4096, [&](size_t i) {
     keys[i] = {random64(key, i, 0), static_cast<uint32_t>(i)};

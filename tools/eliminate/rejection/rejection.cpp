@@ -6,8 +6,8 @@
 #include "core/errors.h"
 #include "core/parallel.h"
 #include "core/random.h"
+#include "core/random_streams.h"
 #include "spatial/local_density.h"
-#include "tools/common/files/streams.h"
 #include "tools/eliminate/eliminate.h"
 #include "transport/camera.h"
 #include "transport/specular_path.h"
@@ -22,13 +22,14 @@ constexpr auto kCameraPointsOption =
                 "points of the image at which the contribution of VPLs is measured");
 // Gives every VPL a positive probability, without which the image would be biased: a VPL that
 // lights none of the points may light other pixels.
-constexpr auto kLeastProbabilityOption =
+constexpr auto kMinProbabilityOption =
     realOption("least-probability", "0.01", 1e-6, 1, "", "added to the probability of every VPL");
 // Without it, a VPL next to a point would outweigh all others.
-constexpr auto kClampOption = realOption(
-    "clamp", "1", 0, 1000, "r_max", "distance within which the measured contribution is clamped");
+constexpr auto kClampOption =
+    realOption("clamp", "1", 0, 1000, "radii of the VPL",
+               "distance within which the measured contribution is clamped");
 constexpr auto kOptions =
-    optionTable(kSeedOption, kCameraPointsOption, kLeastProbabilityOption, kClampOption);
+    optionTable(kSeedOption, kCameraPointsOption, kMinProbabilityOption, kClampOption);
 
 // First rough vertices of `count` camera paths, spread over the film. Paths without one are left
 // out.
@@ -99,7 +100,7 @@ Kept run(const EliminateInputs& in, const Values& options) {
     throw InputError(
         "--method rejection takes VPLs of vpl-place --method light; these are of "
         "vpl-estimate");
-  const uint64_t key = streamKey(options[kSeedOption], Stream::Eliminate) + 1;
+  const uint64_t key = streamKey(options[kSeedOption], RandomStream::Eliminate) + 1;
   const std::vector<SurfacePoint> points = cameraPoints(in, key, options[kCameraPointsOption]);
   const VplLights vpls = makeVplLights(all, *in.accel, options.real32(kClampOption));
   std::vector<double> brings(all.size(), 0.0);
@@ -111,9 +112,8 @@ Kept run(const EliminateInputs& in, const Values& options) {
     throw InputError(in.accel->scene().name(),
                      "no VPL brings any light to what the camera sees; place more with vpl-place");
   }
-  const std::vector<double> p =
-      probabilities(brings, static_cast<double>(options[kEliminateCountOption]),
-                    options[kLeastProbabilityOption]);
+  const std::vector<double> p = probabilities(
+      brings, static_cast<double>(options[kEliminateCountOption]), options[kMinProbabilityOption]);
   Kept kept;
   std::vector<Vec3> position, normal;
   for (uint32_t i = 0; i < p.size(); ++i) {

@@ -13,7 +13,7 @@ struct FromLights {
   }
   VplTable keep(const Given& options) const {
     const Given given = with({{"count", "400"}, {"method", "rejection"}}, options);
-    return eliminate(all, resolve(eliminateSpec(), given), &world.accel, &world.lights).table;
+    return eliminate(all, resolve(eliminateSpec(), given), &world.accel, &world.lights);
   }
   double light(const VplTable& vpls) const {
     const Given plain = with(kPlainRender, {{"only", "indirect"}, {"clamp", "0.01"}});

@@ -6,7 +6,7 @@
 #include <atomic>
 #include <cmath>
 
-#include "tools/common/files/streams.h"
+#include "core/random_streams.h"
 #include "tools/estimate/both/phases.h"
 #include "tools/estimate/both/split.h"
 #include "tools/estimate/both/split_records.h"
@@ -17,7 +17,7 @@ namespace bnvpl::methods::estimate::both {
 
 namespace {
 
-constexpr auto kPhotonsOption = inTopic(
+constexpr auto kTotalWorkOption = inTopic(
     Topic::Main, countOption("photons", "10M", 0x1p36, "",
                              "total work, as a number of photons; paths take a part of it"));
 constexpr auto kIrradianceErrorOption =
@@ -26,10 +26,10 @@ constexpr auto kIrradianceErrorOption =
                                      "of the light in view that comes from VPLs; 0: all work is "
                                      "done"));
 constexpr auto kOptions =
-    optionTable(kPhotonsOption, kEmissionOption, kIrradianceErrorOption, kPathsOption,
+    optionTable(kTotalWorkOption, kEmissionOption, kIrradianceErrorOption, kPathsOption,
                 kRadiusOption, kPathBouncesOption, kEmitPointsOption);
 
-// Share of the work that each pilot gets, about.
+// Each pilot gets about this share of the work.
 constexpr double kPilot = 1.0 / 32.0;
 // Assumed number of rays per path, for the size of the pilot; the pilot measures the true one.
 constexpr double kGuessedRays = 10.0;
@@ -66,24 +66,24 @@ class Estimator {
   Estimator(const EstimateInputs& in, const Values& options)
       : in_(in),
         options_(options),
-        phases_(in.resume),
+        phases_(in.controls),
         emission_{EmissionGuide(in.lights)},
-        work_(options[kPhotonsOption]) {}
+        work_(options[kTotalWorkOption]) {}
 
   EstimateResult run() {
     in_.lights.requirePower();
     emission_ = learnPhotonEmission(in_, options_, maxBounces(), work_);
-    const Split split = in_.resume.trial    ? splitOfTrial()
-                        : in_.resume.source ? takeSplit(*in_.resume.source, in_.vpls.size())
-                                            : pilot();
-    if (in_.resume.sink && in_.resume.shard.has(0)) giveSplit(*in_.resume.sink, split);
+    const Split split = in_.controls.trial    ? splitOfTrial()
+                        : in_.controls.source ? takeSplit(*in_.controls.source, in_.vpls.size())
+                                              : pilot();
+    if (in_.controls.sink && in_.controls.shard.has(0)) giveSplit(*in_.controls.sink, split);
     // A cost trial traces about as many units of photons as of paths, so that any part of it has
     // both.
     const uint64_t sent =
-        unitsToTry(in_.resume.trial, split.photons,
+        unitsToTry(in_.controls.trial, split.photons,
                    kPhotonsOfUnit * std::max(kMinUnits, in_.vpls.size() / kVplsOfUnit));
     const PhotonWork photons =
-        trace(kPhotonPhase, Stream::Photons, sent, split.photonWeight,
+        trace(kPhotonPhase, RandomStream::Photons, sent, split.emissionBalance,
               static_cast<double>(split.photons) / static_cast<double>(sent));
     const PathResult paths = traceSplitPaths(split);
     return combine(split, photons, paths);
@@ -118,10 +118,10 @@ class Estimator {
     return phase < kPhotonPhase ? 0 : options_[kEmitPointsOption];
   }
 
-  PhotonWork trace(size_t phase, Stream stream, uint64_t count,
-                   std::span<const double> emitPointWeights = {}, double times = 1.0) {
+  PhotonWork trace(size_t phase, RandomStream stream, uint64_t count,
+                   std::span<const float> balance = {}, double times = 1.0) {
     PhotonWork work(in_, options_, count);
-    work.scatter.setEmitPointWeights(emitPointWeights);
+    work.scatter.setEmissionBalance(balance);
     const PhotonRun run{streamKey(options_[kSeedOption], stream),
                         emitPointsOf(phase),
                         maxBounces(),
@@ -131,9 +131,9 @@ class Estimator {
     const auto equivalent = static_cast<uint64_t>(progressScale_ * static_cast<double>(count));
     work.sums = phases_.run(
         phase, times,
-        [&](const Resume& resume) {
+        [&](const WorkControls& controls) {
           return withProgress(equivalent, work.shares.total(), [&](const ProgressFn& progress) {
-            return tracePhotons({in_.vpls, in_.accel, in_.lights, progress, resume}, run,
+            return tracePhotons({in_.vpls, in_.accel, in_.lights, progress, controls}, run,
                                 scatterToOneInSight);
           });
         },
@@ -141,19 +141,19 @@ class Estimator {
     return work;
   }
 
-  PathResult tracePaths(size_t phase, Stream stream, std::span<const uint64_t> points,
-                        uint64_t equivalent, double times = 1.0) {
+  PathResult tracePaths(size_t phase, RandomStream stream, std::span<const uint64_t> points,
+                        std::span<const float> balance, uint64_t equivalent, double times = 1.0) {
     if (!spatialLights_) spatialLights_ = makeSpatialLightSampler(in_, options_[kSeedOption]);
-    const VplPaths vplPaths(
-        in_, {streamKey(options_[kSeedOption], stream), options_[kPathsOption], maxBounces(),
-              options_.real32(kRadiusOption), emitPointsOf(phase), spatialLights_.get()});
+    const VplPaths vplPaths(in_, {streamKey(options_[kSeedOption], stream), options_[kPathsOption],
+                                  maxBounces(), options_.real32(kRadiusOption), emitPointsOf(phase),
+                                  spatialLights_.get(), balance, &emission_.guide});
     return phases_.run(
         phase, times,
-        [&](const Resume& resume) {
+        [&](const WorkControls& controls) {
           uint64_t all = 0;
           for (const uint64_t n : points) all += vplPaths.pathsOf(n);
           return withProgress(equivalent, all, [&](const ProgressFn& progress) {
-            return tracePathsOfAll({in_.vpls, in_.accel, in_.lights, progress, resume}, vplPaths,
+            return tracePathsOfAll({in_.vpls, in_.accel, in_.lights, progress, controls}, vplPaths,
                                    points);
           });
         },
@@ -166,15 +166,15 @@ class Estimator {
     double all = 0.0, few = 0.0, left = 0.0;
     for (const uint64_t n : points) all += static_cast<double>(n);
     const double most = kTrialPoints * static_cast<double>(points.size());
-    const double share = in_.resume.trial && all > most ? most / all : 1.0;
+    const double share = in_.controls.trial && all > most ? most / all : 1.0;
     for (uint64_t& n : points) {
       left += share * static_cast<double>(n);
       n = share < 1.0 ? static_cast<uint64_t>(left) : n;
       left -= static_cast<double>(n);
       few += static_cast<double>(n);
     }
-    return tracePaths(kPathPhase, Stream::VplPaths, points, work_ - reported_,
-                      few > 0.0 ? all / few : 1.0);
+    return tracePaths(kPathPhase, RandomStream::VplPaths, points, split.emissionBalance,
+                      work_ - reported_, few > 0.0 ? all / few : 1.0);
   }
 
   // The error of --irradiance-error is relative to all light in view, of which VPLs give a share.
@@ -185,16 +185,16 @@ class Estimator {
 
   // The parts of a cost trial share one split.
   const Split& splitOfTrial() {
-    std::any& kept = in_.resume.trial->kept;
+    std::any& kept = in_.controls.trial->kept;
     if (!kept.has_value()) kept = pilot();
     return std::any_cast<const Split&>(kept);
   }
 
   Split pilot() {
-    CostTrial* const trial = in_.resume.trial;
+    CostTrial* const trial = in_.controls.trial;
     const auto few = static_cast<uint64_t>(std::ceil(kPilot * static_cast<double>(work_)));
     const uint64_t sent = unitsToTry(trial, few, kTrialPhotons);
-    const PhotonWork photons = trace(0, Stream::PilotPhotons, sent, {},
+    const PhotonWork photons = trace(0, RandomStream::PilotPhotons, sent, {},
                                      static_cast<double>(few) / static_cast<double>(sent));
     if (sent < few) reported_ = few;
     Pilots pilots;
@@ -215,15 +215,15 @@ class Estimator {
     std::vector<uint64_t> pointsOf(in_.vpls.size(), 0);
     for (size_t i = 0; i < pointsOf.size(); i += step) pointsOf[i] = points;
     const std::vector<PathSums> some =
-        tracePaths(1, Stream::PilotPaths, pointsOf, few, static_cast<double>(step)).sums;
+        tracePaths(1, RandomStream::PilotPaths, pointsOf, {}, few, static_cast<double>(step)).sums;
     std::vector<PathSums> paths(some.size());
     for (size_t i = 0; i < paths.size(); ++i) paths[i] = some[i - i % step];
     pilots.points = static_cast<double>(points);
     double spent = pilots.photonCost * (trial ? static_cast<double>(few) : pilots.photons);
     for (size_t i = 0; i < in_.vpls.size(); ++i) {
       const VplSum& s = photons.sums.vpl[i];
-      pilots.byPhotons.push_back(
-          {photons.mean3(s.flux) - photons.mean3(s.onlyPhotons), photons.scatter.variance(s)});
+      pilots.byPhotons.push_back({photons.mean3(s.flux) - photons.mean3(s.onlyPhotons),
+                                  photons.scatter.variance(s), photons.scatter.varianceByPower(s)});
       pilots.byPaths.push_back({paths[i].meanFlux(), paths[i].variance()});
       const double cost = static_cast<double>(paths[i].rays);
       pilots.pointCost.push_back(cost / pilots.points);
@@ -258,51 +258,46 @@ class Estimator {
     keep(pilots.byPaths);
     keep(pilots.pointCost);
     pilots.photonCost /= times;
-    const CostTrial::Part part(in_.resume.trial, times);
+    const CostTrial::Part part(in_.controls.trial, times);
     const Split some = splitWork(keepRows(in_.vpls, rows), in_.accel, pilots,
                                  {budget.cost / times, budget.error * std::sqrt(times)});
     Split split = some;
     split.cost *= times;
     split.points.resize(count);
-    split.photonWeight.resize(count);
+    split.emissionBalance.resize(count);
     for (size_t i = 0; i < count; ++i) {
       split.points[i] = some.points[i / step];
-      split.photonWeight[i] = some.photonWeight[i / step];
+      split.emissionBalance[i] = some.emissionBalance[i / step];
     }
     return split;
   }
 
   Split photonsAlone(uint64_t photons) const {
     return {std::max<uint64_t>(1, photons), std::vector<uint64_t>(in_.vpls.size(), 0),
-            std::vector<double>(in_.vpls.size(), 1.0)};
+            std::vector<float>(in_.vpls.size(), 0.0f)};
   }
 
-  // Flux of each VPL: w * photons + (1 - w) * paths, plus the light that only photons find.
+  // Flux of each VPL: the sum of what photons and paths brought, which have their weights.
   EstimateResult combine(const Split& split, const PhotonWork& photons,
                          const PathResult& paths) const {
     EstimateResult result{in_.vpls,
                           accountOf(photons.sums, photons.scatter, photons.shares.total()), 0};
     VplTable& lit = result.table;
     beginLit(lit, options_.real32(kRadiusOption));
-    std::vector<double> pathShare(lit.size());
     const FixedPoint& fixed = photons.scatter.fixed();
     for (size_t i = 0; i < lit.size(); ++i) {
       const VplSum& s = photons.sums.vpl[i];
       const PathSums& r = paths.sums[i];
-      const double w = split.photonWeight[i], rest = 1.0 - w;
       double sum = 0.0;
-      pathShare[i] = rest;
       for (size_t c = 0; c < 3; ++c) {
-        const double alone = fixed.decode(s.onlyPhotons[c]);
-        const double shared = w * (fixed.decode(s.flux[c]) - alone) + rest * r.flux[c];
-        lit.flux[i][c] = static_cast<float>(shared + alone);
+        const double flux = fixed.decode(s.flux[c]) + r.flux[c];
+        lit.flux[i][c] = static_cast<float>(flux);
         lit.firstBounceFlux[i][c] = std::min(
-            lit.flux[i][c],
-            static_cast<float>(w * fixed.decode(s.firstBounce[c]) + rest * r.firstBounce[c]));
-        sum += (shared + alone) / 3.0;
+            lit.flux[i][c], static_cast<float>(fixed.decode(s.firstBounce[c]) + r.firstBounce[c]));
+        sum += flux / 3.0;
       }
       lit.photons[i] = s.photons;
-      const double variance = w * w * photons.scatter.variance(s) + rest * rest * r.variance();
+      const double variance = photons.scatter.variance(s) + r.variance();
       if (sum > 0.0) lit.relativeError[i] = static_cast<float>(std::sqrt(variance) / sum);
       result.paths += r.paths;
       result.energy.nonFinite += r.nonFinite;
@@ -310,10 +305,10 @@ class Estimator {
     result.workShare = split.costShare;
     result.useful = emission_.useful;
     VplGroups groups = photons.scatter.groupFlux(photons.sums);
-    addGroupsTo(groups, paths, pathShare);
+    addGroupsTo(groups, paths);
     finishGroups(std::move(groups), lit);
     EmitPoints points = photons.sums.points;
-    points.add(paths.points, pathShare);
+    points.add(paths.points.winners());
     points.fill(lit);
     return result;
   }
@@ -331,7 +326,7 @@ EstimateResult run(const EstimateInputs& in, const Values& options) {
   return Estimator(in, options).run();
 }
 
-Work work(const VplTable&, const Values& options) { return {"photons", options[kPhotonsOption]}; }
+Work work(const VplTable&, const Values& options) { return {"photons", options[kTotalWorkOption]}; }
 
 }  // namespace
 

@@ -7,6 +7,8 @@
 #include "tests/transport/plain_scene.h"
 #include "tools/estimate/both/irradiance_probes.h"
 #include "tools/estimate/both/split.h"
+#include "tools/estimate/photon_scatter.h"
+#include "tools/estimate/vpl_paths.h"
 
 namespace bnvpl::test {
 namespace {
@@ -42,6 +44,46 @@ double errorOf(const VplTable& vpls, const VplTable& truth) {
     sum += d * d;
   }
   return sum;
+}
+
+// Photons of a point and a spot before the box are guided into it, so that their densities differ
+// from emission by power. Paths find the same light by shadow rays and must know these densities:
+// the weights of both add up to one whatever the balance.
+TEST(Both, PhotonsAndPathsShareTheLightOfGuidedEmission) {
+  Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "cornell/scene.toml");
+  const Vec3 eye = scene.camera.position, to = scene.bounds.center() - eye;
+  LightSpec point;
+  point.type = LightType::Point;
+  point.emission = Vec3(30.0f), point.position = eye - 1.5f * to;
+  LightSpec spot = point;
+  spot.type = LightType::Spot, spot.emission = Vec3(100.0f);
+  spot.direction = normalize(to), spot.coneRad = 1.0f, spot.falloffRad = 0.2f;
+  scene.lights = {point, spot};
+  const World world(std::move(scene));
+  const VplTable vpls = keptVpls(world, {{"count", "100"}}, {{"count", "2k"}});
+  const VplTable truth = lit(world, vpls, "paths", "1000", {{"points", "512"}});
+
+  const EstimateInputs in{vpls, world.accel, world.lights, {}, {}};
+  const PhotonShares shares(world.lights, 1'000'000);
+  const LearnedEmission learned =
+      learnPhotonEmission(in, resolve(estimateSpec(), {{"method", "guarded"}}), 32, shares.total());
+  EXPECT_GT(learned.useful.guided, 2.0 * learned.useful.byPower);
+  for (const float balance : {0.3f, 3.0f, 30.0f}) {
+    const std::vector<float> balances(vpls.size(), balance);
+    PhotonScatter scatter(in, 1.7f, shares.total());
+    scatter.setEmissionBalance(balances);
+    const PhotonSums photons =
+        tracePhotons(in, {1, 0, 32, shares, scatter, &learned.guide}, scatterToOneInSight);
+    const VplPaths paths(in, {2, 4, 32, 1.7f, 0, nullptr, balances, &learned.guide});
+    const std::vector<uint64_t> points(vpls.size(), 64);
+    double sum = 0.0, ofPaths = 0.0;
+    for (const VplSum& s : photons.vpl)
+      for (size_t c = 0; c < 3; ++c) sum += scatter.fixed().decode(s.flux[c]) / 3.0;
+    for (const PathSums& s : tracePathsOfAll(in, paths, points).sums) ofPaths += s.meanFlux();
+    EXPECT_GT(ofPaths / (sum + ofPaths), 0.005) << balance;
+    EXPECT_LT(ofPaths / (sum + ofPaths), 0.9) << balance;
+    EXPECT_NEAR((sum + ofPaths) / totalFlux(truth), 1.0, 0.005) << balance;
+  }
 }
 
 // The mean of many runs is right for each VPL: choices by the pilot runs are independent of the
@@ -204,21 +246,21 @@ TEST(Both, IsTheSameForAnyThreadsAndInterruptions) {
   const World world = lampAndSky();
   const VplTable vpls = keptVpls(world, {{"count", "200"}}, {{"count", "2k"}});
   const Values options = resolve(estimateSpec(), {{"method", "both"}, {"photons", "100k"}});
-  const auto made = [&](size_t threads, const Resume& resume) {
+  const auto made = [&](size_t threads, const WorkControls& controls) {
     tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    return estimate(vpls, world.accel, world.lights, options, {}, resume).table;
+    return estimate(vpls, world.accel, world.lights, options, {}, controls).table;
   };
   const VplTable one = made(1, {});
   EXPECT_GT(totalFlux(one), 0.0);
   // The run is interrupted after each unit of work and continued.
   struct Stopped {};
   std::string state;
-  Resume stops{{},
-               [] { return true; },
-               [&](const std::string& s) {
-                 state = s;
-                 throw Stopped{};
-               }};
+  WorkControls stops{{},
+                     [] { return true; },
+                     [&](const std::string& s) {
+                       state = s;
+                       throw Stopped{};
+                     }};
   int interruptions = 0;
   VplTable other;
   for (bool ended = false; !ended; ++interruptions) {
@@ -263,6 +305,7 @@ PilotEstimate fewSamples(Rng& rng) {
     const double size = rng.next() < 0.05f ? 20.0 : 1.0;
     found.flux += size;
     found.variance += size * size;
+    found.varianceByPower = found.variance;
   }
   return found;
 }
@@ -290,7 +333,8 @@ TEST(Both, WeightsAreNotLedByFewSamplesOfThePilots) {
   const Split split = splitWork(vpls, world.accel, pilots, {kTimes * kVpls, 0.0});
   double result = 0.0;
   for (size_t i = 0; i < kVpls; ++i) {
-    const double w = split.photonWeight[i], points = std::max(1e-3, double(split.points[i]));
+    const double w = 1.0 / (1.0 + double{split.emissionBalance[i]});
+    const double points = std::max(1e-3, double(split.points[i]));
     result += variance * (w * w * kVpls / double(split.photons) + (1.0 - w) * (1.0 - w) / points);
   }
   EXPECT_LT(result / kVpls / (variance / kTimes), 1.5);

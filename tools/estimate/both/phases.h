@@ -4,7 +4,7 @@
 #include <array>
 #include <string>
 
-#include "core/resume.h"
+#include "core/work_controls.h"
 
 namespace bnvpl::methods::estimate::both {
 
@@ -12,7 +12,7 @@ namespace bnvpl::methods::estimate::both {
 template <size_t kCount, size_t kFirstShared>
 class Phases {
  public:
-  explicit Phases(const Resume& whole) : whole_(whole) {
+  explicit Phases(const WorkControls& whole) : whole_(whole) {
     if (whole.state.empty()) return;
     std::string_view bytes = whole.state;
     std::array<uint64_t, kCount> sizes{};
@@ -24,16 +24,16 @@ class Phases {
     requireAllTaken(bytes);
   }
 
-  // Runs phase k. body(resume) returns its result, and finished(result) the resume state of the
-  // finished phase. `times` is that of Resume.
+  // Runs phase k. body(controls) returns its result, and finished(result) the resume state of the
+  // finished phase. `trialScale` is that of WorkControls.
   template <typename Body, typename Finished>
-  auto run(size_t k, double times, const Body& body, const Finished& finished) {
-    Resume part{states_[k], whole_.pause, [&](const std::string& state) {
-                  states_[k] = state;
-                  whole_.save(encoded());
-                }};
+  auto run(size_t k, double trialScale, const Body& body, const Finished& finished) {
+    WorkControls part{states_[k], whole_.pause, [&](const std::string& state) {
+                        states_[k] = state;
+                        whole_.save(encoded());
+                      }};
     part.trial = whole_.trial;
-    part.times = times;
+    part.trialScale = trialScale;
     if (k >= kFirstShared)
       part.shard = whole_.shard, part.sink = whole_.sink, part.source = whole_.source;
     auto result = body(part);
@@ -51,7 +51,7 @@ class Phases {
     return bytes;
   }
 
-  const Resume& whole_;
+  const WorkControls& whole_;
   std::array<std::string, kCount> states_;
 };
 

@@ -36,6 +36,17 @@ struct Pooled {
   double flux = 0.0, variance = 0.0;
 };
 
+// The mean over light of the density with which its photons start, relative to emission by power:
+// by how much photons vary less than if they started so. Where the pool has no photons, it is that
+// of the pool around it.
+double startDensity(std::span<const uint32_t> pool, const std::vector<PilotEstimate>& photons,
+                    double around) {
+  double variance = 0.0, byPower = 0.0;
+  for (const uint32_t k : pool)
+    variance += photons[k].variance, byPower += photons[k].varianceByPower;
+  return variance > 0.0 && byPower > 0.0 ? byPower / variance : around;
+}
+
 // Square of a typical sample, variance / flux, that the pilot may have missed. It is taken from
 // this pool or, if that has no flux, from all VPLs.
 double missedSquared(const Pooled& here, double sampleAnywhere) {
@@ -50,14 +61,14 @@ double meanSample(const std::vector<PilotEstimate>& found) {
 }
 
 // Statistics of a VPL, pooled over those around it: the variance of a single photon and of a single
-// point, the flux, and the cost of a point.
+// point, the flux, the cost of a point, and startDensity().
 struct VplStatistics {
-  double photonVariance = 0.0, pointVariance = 0.0, flux = 0.0, pointCost = 0.0;
+  double photonVariance = 0.0, pointVariance = 0.0, flux = 0.0, pointCost = 0.0, startDensity = 1.0;
 };
 
-// Sizes of typical samples of both pilots where nothing is known of a pool.
+// Sizes of typical samples of both pilots, and startDensity(), where nothing is known of a pool.
 struct Samples {
-  double photons = 0.0, points = 0.0;
+  double photons = 0.0, points = 0.0, startDensity = 1.0;
 };
 
 // Both pilots in a pool. `flux` is the average over its VPLs, weighted by inverse variance.
@@ -113,6 +124,7 @@ VplStatistics poolPilots(std::span<const uint32_t> wide, const Pilots& pilots,
   v.flux = here.flux;
   v.photonVariance = photons * flux * pilots.photons;
   v.pointVariance = points * flux * pilots.points;
+  v.startDensity = startDensity(wide, pilots.byPhotons, anywhere.startDensity);
   for (const uint32_t k : near)
     v.pointCost += pilots.pointCost[k] / static_cast<double>(near.size());
   return v;
@@ -122,7 +134,10 @@ std::vector<VplStatistics> poolAllPilots(const VplTable& vpls, const Pilots& pil
   const KdTree tree(vpls.position);
   // A pilot whose photons reached no VPL tells only their power.
   const double found = meanSample(pilots.byPhotons);
-  const Samples anywhere{found > 0.0 ? found : pilots.photonPower, meanSample(pilots.byPaths)};
+  std::vector<uint32_t> all(vpls.size());
+  std::iota(all.begin(), all.end(), 0u);
+  const Samples anywhere{found > 0.0 ? found : pilots.photonPower, meanSample(pilots.byPaths),
+                         startDensity(all, pilots.byPhotons, 1.0)};
   std::vector<VplStatistics> statistics(vpls.size());
   parallelRanges(vpls.size(), 256, [&](size_t begin, size_t end) {
     std::vector<Neighbour> near;
@@ -187,11 +202,12 @@ class PointAllocation {
     }
     return probes.relativeError(flux, variances);
   }
-  // Weight of photons in the flux of VPL i, by inverse variance.
-  double photonWeight(size_t i, double photons, double points) const {
+  // Split::emissionBalance of VPL i. Photons that start with density g vary g times less than by
+  // power, so that their weight by inverse variance is g / (g + balance).
+  double emissionBalance(size_t i, double photons, double points) const {
     const VplStatistics& v = vpls_[i];
-    if (!(points > 0.0)) return 1.0;
-    return photons * v.pointVariance / (photons * v.pointVariance + points * v.photonVariance);
+    if (!(points > 0.0)) return 0.0;
+    return v.startDensity * points * v.photonVariance / (photons * v.pointVariance);
   }
 
  private:
@@ -247,13 +263,14 @@ Split splitWork(const VplTable& vpls, const Accelerator& accel, const Pilots& pi
   Split split;
   split.photons = std::max<uint64_t>(1, static_cast<uint64_t>(std::llround(best.photons)));
   split.points.resize(vpls.size());
-  split.photonWeight.resize(vpls.size());
+  split.emissionBalance.resize(vpls.size());
   const auto photons = static_cast<double>(split.photons);
   split.cost = photons * pilots.photonCost + points.costAt(photons, best.lambda);
   split.costShare = std::min(1.0, split.cost / budget.cost);
   for (size_t i = 0; i < vpls.size(); ++i) {
     split.points[i] = static_cast<uint64_t>(std::llround(points.at(i, photons, best.lambda)));
-    split.photonWeight[i] = points.photonWeight(i, photons, static_cast<double>(split.points[i]));
+    split.emissionBalance[i] = static_cast<float>(
+        points.emissionBalance(i, photons, static_cast<double>(split.points[i])));
   }
   return split;
 }

@@ -10,9 +10,10 @@
 
 namespace bnvpl::methods::estimate::both {
 
-// Estimate of a VPL by a pilot: flux, averaged over the channels, in W, and its variance.
+// Estimate of a VPL by a pilot: flux, averaged over the channels, in W, and its variance. Of
+// photons also the variance that it would have if they started in proportion to power.
 struct PilotEstimate {
-  double flux = 0.0, variance = 0.0;
+  double flux = 0.0, variance = 0.0, varianceByPower = 0.0;
 };
 
 struct Pilots {
@@ -27,7 +28,9 @@ struct Pilots {
 struct Split {
   uint64_t photons = 0;
   std::vector<uint64_t> points;  // one per VPL
-  std::vector<double> photonWeight;  // one per VPL: of photons in its flux, 0 to 1
+  // One per VPL: photons that start with density g, relative to emission by power, have the weight
+  // g / (g + emissionBalance) in its flux.
+  std::vector<float> emissionBalance;
   double cost = 0.0;             // cost of photons and points
   double costShare = 1.0;        // cost over that of the budget
 };

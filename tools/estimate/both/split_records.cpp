@@ -7,7 +7,7 @@ namespace bnvpl::methods::estimate::both {
 namespace {
 
 constexpr std::string_view kCount = "split.count", kCostShare = "split.cost",
-                           kPoints = "split.points", kPhotonWeight = "split.share";
+                           kPoints = "split.points", kEmissionBalance = "split.balance";
 
 }  // namespace
 
@@ -15,16 +15,16 @@ void giveSplit(const ShardSink& sink, const Split& split) {
   giveRecord(sink, kCount, 0, std::array{split.photons});
   giveRecord(sink, kCostShare, 0, std::array{split.costShare});
   giveRecord(sink, kPoints, 0, split.points);
-  giveRecord(sink, kPhotonWeight, 0, split.photonWeight);
+  giveRecord(sink, kEmissionBalance, 0, split.emissionBalance);
 }
 
 Split takeSplit(const ShardSource& source, size_t vpls) {
   std::array<uint64_t, 1> photons{};
   std::array<double, 1> costShare{};
-  Split split{0, std::vector<uint64_t>(vpls), std::vector<double>(vpls)};
+  Split split{0, std::vector<uint64_t>(vpls), std::vector<float>(vpls)};
   takeRecord(source, kCount, 0, photons);
   takeRecord(source, kPoints, 0, split.points);
-  takeRecord(source, kPhotonWeight, 0, split.photonWeight);
+  takeRecord(source, kEmissionBalance, 0, split.emissionBalance);
   takeRecord(source, kCostShare, 0, costShare);
   split.photons = photons[0];
   split.costShare = costShare[0];

@@ -1,7 +1,7 @@
 // The split in the files of shards.
 #pragma once
 
-#include "core/resume.h"
+#include "core/work_controls.h"
 #include "tools/estimate/both/split.h"
 
 namespace bnvpl::methods::estimate::both {

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "tools/common/files/streams.h"
+#include "core/random_streams.h"
 #include "tools/estimate/vpl_paths.h"
 
 namespace bnvpl::methods::estimate::paths {
@@ -21,19 +21,19 @@ EstimateResult run(const EstimateInputs& in, const Values& options) {
   in.lights.requirePower();
   const auto spatialLights = makeSpatialLightSampler(in, options[kSeedOption]);
   // A cost trial (--estimate) takes fewer points and paths.
-  CostTrial* const trial = in.resume.trial;
+  CostTrial* const trial = in.controls.trial;
   const uint64_t each = options[kPointsOption], fewPoints = unitsToTry(trial, each, 8),
                  paths = options[kPathsOption], fewPaths = unitsToTry(trial, paths, 8);
   const VplPaths vplPaths(
-      in, {streamKey(options[kSeedOption], Stream::VplPaths), fewPaths,
+      in, {streamKey(options[kSeedOption], RandomStream::VplPaths), fewPaths,
            static_cast<unsigned>(options[kPathBouncesOption]), options.real32(kRadiusOption),
            options[kEmitPointsOption], spatialLights.get()});
   const std::vector<uint64_t> points(in.vpls.size(), fewPoints);
-  Resume resume = in.resume;
-  resume.times = static_cast<double>(each) * static_cast<double>(paths) /
-                 static_cast<double>(fewPoints * fewPaths);
+  WorkControls controls = in.controls;
+  controls.trialScale = static_cast<double>(each) * static_cast<double>(paths) /
+                        static_cast<double>(fewPoints * fewPaths);
   const PathResult received =
-      tracePathsOfAll({in.vpls, in.accel, in.lights, in.progress, resume}, vplPaths, points);
+      tracePathsOfAll({in.vpls, in.accel, in.lights, in.progress, controls}, vplPaths, points);
   EstimateResult result{in.vpls, {}, 0};
   VplTable& lit = result.table;
   beginLit(lit, options.real32(kRadiusOption));

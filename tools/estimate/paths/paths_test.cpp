@@ -121,21 +121,21 @@ TEST(Paths, AreTheSameForAnyThreadsAndInterruptions) {
   const World world("cornell/scene.toml");
   const VplTable vpls = keptVpls(world, {{"count", "200"}}, {{"count", "2k"}});
   const Values options = resolve(estimateSpec(), {{"method", "paths"}, {"points", "16"}});
-  const auto made = [&](size_t threads, const Resume& resume) {
+  const auto made = [&](size_t threads, const WorkControls& controls) {
     tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    return estimate(vpls, world.accel, world.lights, options, {}, resume).table;
+    return estimate(vpls, world.accel, world.lights, options, {}, controls).table;
   };
   const VplTable one = made(1, {});
   struct Stopped {};
   std::string state;
-  Resume stops{{},
-               [] { return true; },
-               [&](const std::string& s) {
-                 state = s;
-                 throw Stopped{};
-               }};
+  WorkControls stops{{},
+                     [] { return true; },
+                     [&](const std::string& s) {
+                       state = s;
+                       throw Stopped{};
+                     }};
   EXPECT_THROW(made(2, stops), Stopped);
-  for (const VplTable& other : {made(7, {}), made(2, Resume{state, {}, {}})}) {
+  for (const VplTable& other : {made(7, {}), made(2, WorkControls{state, {}, {}})}) {
     EXPECT_EQ(other.flux, one.flux);
     EXPECT_EQ(other.emitPosition, one.emitPosition);
     EXPECT_EQ(other.relativeError, one.relativeError);

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/parallel.h"
-#include "tools/common/files/streams.h"
+#include "core/random_streams.h"
 #include "transport/camera.h"
 #include "transport/virtual_light.h"
 #include "transport/walk.h"
@@ -75,7 +75,7 @@ Contributions contributionsOf(const Accelerator& accel, const VplTable& lit,
   const Camera& camera = accel.scene().camera;
   const Film& film = options.film;
   const unsigned n = options.samplesPerAxis;
-  const uint64_t key = streamKey(0, Stream::Contributions);
+  const uint64_t key = streamKey(0, RandomStream::Contributions);
   Contributions out{film, std::vector<PixelContributions>(size_t{film.width} * film.height), {}};
 
   const auto addPixel = [&](size_t x, size_t y, std::vector<float>& ofRow) {

@@ -17,7 +17,7 @@ struct ContributionOptions {
   Film film;                    // resolution of the table
   unsigned samplesPerAxis = 2;  // camera rays per pixel and axis
   size_t perPixel = 64;         // VPLs that are listed for a pixel
-  float clamp = 2.0f;           // as of vpl-render, in units of r_max
+  float clamp = 2.0f;           // that of vpl-render, in units of the VPL's radius
 };
 
 // VPL light of one pixel: the mean of the channels, W/(m2 sr).

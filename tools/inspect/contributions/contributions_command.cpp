@@ -38,7 +38,7 @@ CLI::App* addContributionOptions(CLI::App& cli, ContributionRequest& c) {
   addOption(*sub, kPerPixelOption,
             [&c](const Value& value) { c.perPixel = std::get<uint64_t>(value); });
   addReal(*sub,
-          realOption("clamp", "2", 0, 1000, "r_max",
+          realOption("clamp", "2", 0, 1000, "radii of the VPL",
                      "radius of a VPL: 1/d^2 of a point is clamped within it, as by vpl-render"),
           c.clamp);
   addExamples(*sub,

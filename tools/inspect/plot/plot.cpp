@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "core/parallel.h"
+#include "core/random_streams.h"
 #include "formats/image/tonemap.h"
 #include "formats/vpl/vpl_io.h"
-#include "tools/common/files/streams.h"
 #include "tools/inspect/display_colour.h"
 #include "transport/camera.h"
 #include "transport/walk.h"
@@ -108,7 +108,7 @@ Canvas shadeView(const Accelerator& accel, unsigned samplesPerAxis) {
   const Scene& scene = accel.scene();
   Canvas canvas{static_cast<int>(scene.film.width), static_cast<int>(scene.film.height), {}};
   canvas.pixels.resize(size_t{scene.film.width} * scene.film.height);
-  const uint64_t key = streamKey(0, Stream::Plot);
+  const uint64_t key = streamKey(0, RandomStream::Plot);
   const float n = static_cast<float>(samplesPerAxis);
   parallelFor(canvas.pixels.size(), 256, [&](size_t i) {
     const size_t column = i % scene.film.width, row = i / scene.film.width;

@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "tools/common/files/streams.h"
+#include "core/random_streams.h"
 #include "tools/place/path_rows.h"
 #include "transport/walk.h"
 
@@ -91,11 +91,11 @@ void traceCameraPaths(const Accelerator& accel, const PlaceViews& views, unsigne
   }
 }
 
-// Traces camera paths over the whole film of each view, stratified so that every prefix covers it
-// evenly. Paths pass through specular vertices. Each rough vertex from the second to the `depth`-th
-// becomes a candidate that faces the side it was seen from.
+// Returns the function that traces a chunk. Camera rays follow the R2 sequence over the film of
+// each view, so that every prefix covers it evenly. Paths pass through specular vertices. Each
+// rough vertex from the second to the `depth`-th becomes a candidate on the side it was seen from.
 TracePaths make(const PlaceInputs& in, const Values& options) {
-  const uint64_t key = streamKey(options[kSeedOption], Stream::PlaceCamera);
+  const uint64_t key = streamKey(options[kSeedOption], RandomStream::PlaceCamera);
   const auto depth = static_cast<unsigned>(options[kDepthOption]);
   return [&accel = in.accel, &views = in.views, key, depth](uint64_t begin, PathRows& chunk) {
     traceCameraPaths(accel, views, depth, begin, key, chunk);

@@ -1,8 +1,8 @@
 // Instant radiosity (Keller 1997): a VPL at every diffuse hit of photons from the lights.
 #include <array>
 
+#include "core/random_streams.h"
 #include "spatial/local_density.h"
-#include "tools/common/files/streams.h"
 #include "tools/place/path_rows.h"
 #include "transport/photon_walk.h"
 
@@ -34,7 +34,7 @@ void tracePhotonPath(const Accelerator& accel, const LightSet& lights, unsigned 
 
 TracePaths make(const PlaceInputs& in, const Values& options) {
   in.lights.requirePower();
-  const uint64_t key = streamKey(options[kSeedOption], Stream::PlaceLight);
+  const uint64_t key = streamKey(options[kSeedOption], RandomStream::PlaceLight);
   const auto depth = static_cast<unsigned>(options[kLightDepthOption]);
   return [&accel = in.accel, &lights = in.lights, key, depth](uint64_t begin, PathRows& chunk) {
     for (uint64_t path = begin; path < begin + kPathsPerChunk; ++path)

@@ -82,7 +82,7 @@ inline float commonRadius(const VplTable& lit) {
 struct CompensateInputs {
   const VplTable& lit;
   const Accelerator& accel;
-  float clamp;  // bound on 1/d^2, in units of each VPL's r_max
+  float clamp;  // bound on 1/d^2, in units of each VPL's radius
   VplKind light;
   const VplGroups& groups;  // the VPLs' flux by light group; empty: not told apart
 };

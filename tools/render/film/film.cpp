@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "tools/common/files/streams.h"
+#include "core/random_streams.h"
 #include "tools/render/film/film_state.h"
 #include "tools/render/film/film_sums.h"
 #include "tools/render/film/fireflies.h"
@@ -138,20 +138,20 @@ std::optional<PixelBox> sampledPixels(const Film& film, const FilmOptions& optio
 }
 
 Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOptions& options,
-                 FilmStats& stats, const ProgressFn& progress, const Resume& resume,
+                 FilmStats& stats, const ProgressFn& progress, const WorkControls& controls,
                  const FilmPreview& preview) {
-  const uint64_t key = streamKey(options.seed, Stream::PixelSamples);
-  FilmState film(scene.film, static_cast<bool>(integrator.tracePhotons), resume.shard,
+  const uint64_t key = streamKey(options.seed, RandomStream::PixelSamples);
+  FilmState film(scene.film, static_cast<bool>(integrator.tracePhotons), controls.shard,
                  sampledPixels(scene.film, options), options.groups.size());
   const Tiles& tiles = film.tiles;
-  if (!resume.state.empty()) film.decode(resume.state);
+  if (!controls.state.empty()) film.decode(controls.state);
   const uint64_t perRound = integrator.wholePixels ? options.spp : kSamplesPerRound;
   const uint64_t rounds = (options.spp + perRound - 1) / perRound;
   const auto samplesBefore = [&](uint64_t round) {
     return static_cast<uint32_t>(std::min<uint64_t>(options.spp, round * perRound));
   };
   const auto state = [&] { return film.encode(); };
-  const uint64_t own = resume.shard.shareOf(tiles.pixelsMeeting(film.crop));
+  const uint64_t own = controls.shard.shareOf(tiles.pixelsMeeting(film.crop));
   if (progress) progress(own * samplesBefore(film.at.round));
   for (; film.at.round < rounds; ++film.at.round, film.beginRound()) {
     const uint32_t begin = samplesBefore(film.at.round), end = samplesBefore(film.at.round + 1);
@@ -162,7 +162,7 @@ Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOpt
       if (film.done[index] == 1) report(tiles.at(index));
     }
     forUnitsLeft(
-        film.done, resume,
+        film.done, controls,
         [&](size_t index) {
           const Tile tile = tiles.at(index);
           sampleTile(scene, options.filter, integrator, key, tile,
@@ -179,11 +179,11 @@ Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOpt
   }
   if (integrator.tracePhotons) {
     const uint64_t photons = uint64_t{options.spp} * film.pixels.size();
-    const auto phase = progress.before("photons", resume.shard.shareOf(photons));
+    const auto phase = progress.before("photons", controls.shard.shareOf(photons));
     if (progress) progress(film.at.splats.traced);
     addSplats(
         integrator.tracePhotons, photons, film.at.splats,
-        [&](const Splat& splat) { film.add(splat); }, progress, resume, state,
+        [&](const Splat& splat) { film.add(splat); }, progress, controls, state,
         [&, pace = PreviewPace(nowS() + 1.0)]() mutable {
           if (!preview.image || !pace.due()) return;
           pace.show([&] {
@@ -193,9 +193,9 @@ Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOpt
         });
     film.splats.addNonFinite(film.at.splats.nonFinite);
   }
-  if (!resume.sink) return develop(scene.film, options, film, stats, options.firstHits);
-  film.giveTo(*resume.sink);
-  giveFirstHits(film, options.firstHits, *resume.sink);
+  if (!controls.sink) return develop(scene.film, options, film, stats, options.firstHits);
+  film.giveTo(*controls.sink);
+  giveFirstHits(film, options.firstHits, *controls.sink);
   return blankImage(scene.film);
 }
 

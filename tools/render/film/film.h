@@ -5,12 +5,12 @@
 #include <optional>
 
 #include "core/progress.h"
-#include "core/resume.h"
+#include "core/work_controls.h"
 #include "formats/image/image.h"
 #include "scene/scene.h"
-#include "tools/render/film/film_filter.h"
 #include "tools/render/film/film_preview.h"
 #include "tools/render/film/first_hits.h"
+#include "tools/render/film/gather_filter.h"
 #include "tools/render/film/integrator_interface.h"
 #include "tools/render/film/layers.h"
 #include "tools/render/pixel_filter.h"
@@ -26,7 +26,7 @@ struct FilmOptions {
   PixelFilter filter = {};
   std::optional<PixelBox> crop = {};  // the pixels of the image; none: all
   FirstHitValues firstHits = {};      // traceFirstHits(); unused by joinFilm()
-  FilmFilter gatherFilter = {};       // smooths RadianceSample::gathered
+  GatherFilter gatherFilter = {};     // smooths RadianceSample::gathered
   std::vector<std::string> groups = {};  // light groups to show; empty: none
 };
 
@@ -57,11 +57,11 @@ std::optional<PixelBox> sampledPixels(const Film& film, const FilmOptions& optio
 
 // Renders with samples that are stratified in each pixel and spread like its filter. A tile depends
 // only on the seed and its position, so that a crop has the pixels of the whole image. Progress
-// counts samples and photons. The state of `resume` holds the sums of every pixel. A shard returns
-// a blank image; the sums of its tiles and of its photons go to the sink.
+// counts samples and photons. The state of `controls` holds the sums of every pixel. A shard
+// returns a blank image; the sums of its tiles and of its photons go to the sink.
 Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOptions& options,
-                 FilmStats& stats, const ProgressFn& progress = {}, const Resume& resume = {},
-                 const FilmPreview& preview = {});
+                 FilmStats& stats, const ProgressFn& progress = {},
+                 const WorkControls& controls = {}, const FilmPreview& preview = {});
 
 // Develops the image from the sums of all shards. `photons`: whether the integrator traces photons.
 Image joinFilm(const Film& film, const FilmOptions& options, bool photons, FilmStats& stats,

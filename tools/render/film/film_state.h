@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/resume.h"
+#include "core/work_controls.h"
 #include "tools/render/film/film_groups.h"
 #include "tools/render/film/splat_sums.h"
 #include "tools/render/film/tiles.h"

@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "core/parallel.h"
-#include "tools/common/files/streams.h"
+#include "core/random_streams.h"
 #include "tools/render/film/cryptomatte.h"
 #include "tools/render/film/denoiser_features.h"
 
@@ -31,7 +31,7 @@ class FirstHits {
         filter_(filter),
         tiles_(accel.scene().film),
         layers_(firstHitLayers(layers)),
-        key_(streamKey(seed, Stream::PixelSamples)),
+        key_(streamKey(seed, RandomStream::PixelSamples)),
         range_{0, raysFor(spp), raysFor(spp), std::min<uint64_t>(spp, UINT32_MAX)} {
     for (const std::string& name : objectMatteNames(accel.scene()))
       objectIds_.push_back(cryptomatteId(name));

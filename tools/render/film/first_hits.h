@@ -28,7 +28,7 @@ std::vector<const Layer*> firstHitLayers(std::span<const Layer* const> layers);
 size_t firstHitChannels(std::span<const Layer* const> layers);
 
 // The function that traces a tile; empty without such layers. `filter` spreads the rays, which all
-// count alike. `spp`: samples per pixel of the image. Thread-safe; borrows the rays.
+// count alike. `spp`: samples per pixel of the image. Thread-safe; borrows accel.
 FirstHitValues traceFirstHits(const Accelerator& accel, const PixelFilter& filter,
                               std::span<const Layer* const> layers, uint64_t seed, uint64_t spp);
 

@@ -1,7 +1,7 @@
 #include "tools/render/film/pass_trial.h"
 
 #include "core/parallel.h"
-#include "tools/common/files/streams.h"
+#include "core/random_streams.h"
 #include "tools/render/film/partial_film.h"
 #include "tools/render/film/passes.h"
 #include "tools/render/film/tiles.h"
@@ -10,7 +10,7 @@ namespace bnvpl {
 
 namespace {
 
-constexpr size_t kLeastTiles = 64, kTilesForEach = 64;  // a trial has one tile of this many
+constexpr size_t kMinTiles = 64, kTilesForEach = 64;    // a trial has one tile of this many
 constexpr size_t kWorthATrial = 512;                    // tiles of a film
 
 // Seconds of `count` units that are tried in parallel.
@@ -28,8 +28,8 @@ uint32_t sppThatFits(const Scene& scene, const Integrator& integrator, const Fil
   const Tiles tiles(scene.film);
   if (tiles.count() < kWorthATrial) return kPassSpp;
   const SpreadOrder order(tiles.count());
-  const size_t tried = std::max(kLeastTiles, tiles.count() / kTilesForEach);
-  const uint64_t key = streamKey(options.seed, Stream::PixelSamples);
+  const size_t tried = std::max(kMinTiles, tiles.count() / kTilesForEach);
+  const uint64_t key = streamKey(options.seed, RandomStream::PixelSamples);
   const double tilesS = secondsOf(tried, [&](size_t k) {
     sampleTile(scene, options.filter, integrator, key, tiles.at(order(k)),
                {0, kPassSpp, kPassSpp, kMaxPassSpp, 0},

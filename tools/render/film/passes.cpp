@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "tools/common/files/streams.h"
+#include "core/random_streams.h"
 #include "tools/common/run/clock.h"
 #include "tools/render/film/film_groups.h"
 #include "tools/render/film/fireflies.h"
@@ -29,13 +29,13 @@ class Passes {
         options_(options),
         budget_(budget),
         tiles_(scene.film),
-        key_(streamKey(options.seed, Stream::PixelSamples)),
+        key_(streamKey(options.seed, RandomStream::PixelSamples)),
         state_(size_t{scene.film.width} * scene.film.height, tiles_.count(), options.groups.size()),
         known_(state_.sums.size()) {}
 
-  void run(const ProgressFn& progress, const Resume& resume, const FilmPreview& preview) {
-    const bool resumed = !resume.state.empty();
-    if (resumed) state_.decode(resume.state);
+  void run(const ProgressFn& progress, const WorkControls& controls, const FilmPreview& preview) {
+    const bool resumed = !controls.state.empty();
+    if (resumed) state_.decode(controls.state);
     startS_ = budget_.startS - state_.at.spentS;
     if (state_.at.passSpp == 0)
       state_.at.passSpp = budget_.passSpp ? budget_.passSpp : trialPassSpp();
@@ -43,7 +43,7 @@ class Passes {
     PreviewPace pace(std::min(nowS() + 1.0, startS_ + kFirstPreview * budget_.timeS));
     for (bool under = resumed; under || !ended(); under = false) {
       if (!under) chooseSlots();
-      makePass(progress, resume, preview, pace);
+      makePass(progress, controls, preview, pace);
       closePass();
       if (progress)
         progress.tell({leftS(), state_.at.pass > 1 ? std::optional(error_) : std::nullopt});
@@ -160,8 +160,8 @@ class Passes {
     }
   }
 
-  void makePass(const ProgressFn& progress, const Resume& resume, const FilmPreview& preview,
-                PreviewPace& pace) {
+  void makePass(const ProgressFn& progress, const WorkControls& controls,
+                const FilmPreview& preview, PreviewPace& pace) {
     const double passesStartS = nowS() - state_.at.passesS;
     const auto state = [&] {
       state_.at.spentS = nowS() - startS_;
@@ -185,19 +185,19 @@ class Passes {
       if (lock.owns_lock() && pace.due()) pace.show([&] { preview.image(partial->image()); });
     };
     forUnitsLeft(
-        state_.done, resume,
+        state_.done, controls,
         [&](size_t index) {
           makeTile(index);
           show(index);
           if (progress) progress(uint64_t{tiles_.at(index).pixels()} * state_.spp[index]);
         },
         state, SpreadOrder(tiles_.count()));
-    if (integrator_.tracePhotons) addPhotons(progress, resume, state);
+    if (integrator_.tracePhotons) addPhotons(progress, controls, state);
     state_.at.passesS = nowS() - passesStartS;
   }
 
   template <typename State>
-  void addPhotons(const ProgressFn& progress, const Resume& resume, const State& state) {
+  void addPhotons(const ProgressFn& progress, const WorkControls& controls, const State& state) {
     const float share = 1.0f / static_cast<float>(passSpp());
     addSplats(
         integrator_.tracePhotons, (state_.at.pass + 1) * passSpp() * state_.sums.size(),
@@ -210,7 +210,7 @@ class Passes {
           for (size_t c = 0; c < 3; ++c)
             state_.values[splat.pixel][c] += double{contribution[int(c)]};
         },
-        progress, resume, state);
+        progress, controls, state);
   }
 
   void makeTile(size_t index) {
@@ -284,9 +284,10 @@ class Passes {
 
 Image renderPasses(const Scene& scene, const Integrator& integrator, const FilmOptions& options,
                    const Budget& budget, FilmStats& stats, PassesDone& done,
-                   const ProgressFn& progress, const Resume& resume, const FilmPreview& preview) {
+                   const ProgressFn& progress, const WorkControls& controls,
+                   const FilmPreview& preview) {
   Passes passes(scene, integrator, options, budget);
-  passes.run(progress, resume, preview);
+  passes.run(progress, controls, preview);
   return passes.image(stats, done);
 }
 

@@ -55,7 +55,7 @@ struct PassesDone {
 // their samples, down to its bytes. The first preview comes after a second, or a tenth of the time.
 Image renderPasses(const Scene& scene, const Integrator& integrator, const FilmOptions& options,
                    const Budget& budget, FilmStats& stats, PassesDone& passes,
-                   const ProgressFn& progress = {}, const Resume& resume = {},
+                   const ProgressFn& progress = {}, const WorkControls& controls = {},
                    const FilmPreview& preview = {});
 
 }  // namespace bnvpl

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/resume.h"
+#include "core/work_controls.h"
 #include "tools/render/film/film_groups.h"
 #include "tools/render/film/layers.h"
 #include "tools/render/splat/add_splats.h"

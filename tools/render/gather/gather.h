@@ -10,7 +10,7 @@
 #include "core/progress.h"
 #include "core/random.h"
 #include "tools/common/stage/method.h"
-#include "tools/render/film/film_filter.h"
+#include "tools/render/film/gather_filter.h"
 #include "tools/render/light_tree/light_tree.h"
 #include "tools/render/sample.h"
 #include "transport/bsdf.h"
@@ -33,7 +33,7 @@ struct Gathered {
 struct TileReceivers : TileLayout {
   std::span<const Bsdf* const> bsdf;
   Vec3* groupSums = nullptr;  // receives the radiance by light group, `groups` for each receiver
-  GroupSink groupsOf(size_t receiver) const {
+  LightGroupSink groupsOf(size_t receiver) const {
     return {groupSums ? groupSums + receiver * groups : nullptr};
   }
   // Share of the receiver's radiance in the sum over its pixel's samples, for methods that answer
@@ -52,7 +52,8 @@ struct TileReceivers : TileLayout {
 using TileGatherFn = std::function<void(const TileReceivers&, std::span<Gathered>)>;
 // Light of the VPLs at a vertex of a random path: an unbiased estimate with `draws` (> 0) VPLs. The
 // sink receives its radiance by light group.
-using PointGatherFn = std::function<Gathered(const Bsdf&, unsigned draws, Rng&, const GroupSink&)>;
+using PointGatherFn =
+    std::function<Gathered(const Bsdf&, unsigned draws, Rng&, const LightGroupSink&)>;
 
 // Immutable and thread-safe.
 struct Gather {
@@ -89,7 +90,7 @@ struct GatherMethod {
   std::span<const Counter> counters = {};
   // Smooths the gathered light over the film; null or an empty filter: it stays as it is. The first
   // of `counters` is the number of pixels that the filter averages.
-  FilmFilter (*filmFilter)(const Values&) = nullptr;
+  GatherFilter (*gatherFilter)(const Values&) = nullptr;
   bool lightGroups = true;  // fills TileReceivers::groupSums
   bool pixelSum = false;    // treats all samples of a pixel as one, with their weights
 };
@@ -104,7 +105,7 @@ Gather gatherEach(Fn fn) {
     for (size_t i = 0; i < out.size(); ++i) {
       out[i] = {};
       if (!tile.bsdf[i]) continue;
-      if constexpr (std::is_invocable_v<const Fn&, const Bsdf&, const GroupSink&>) {
+      if constexpr (std::is_invocable_v<const Fn&, const Bsdf&, const LightGroupSink&>) {
         out[i] = fn(*tile.bsdf[i], tile.groupsOf(i));
       } else {
         const uint64_t sample = i + uint64_t{tile.firstSample} * tile.pixels;

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/cdf.h"
+#include "core/memory.h"
 #include "core/parallel.h"
 #include "tools/render/gather/shadow_test.h"
 
@@ -36,6 +38,10 @@ Columns Columns::inRows(std::span<const size_t> rows) const {
 
 Columns columnsAt(const GatherInputs& in, std::span<const SurfacePoint> receivers,
                   std::string_view phase) {
+  requireMemory(double{sizeof(Vec3)} * double(in.vpls.size()) * double(receivers.size()),
+                "the matrix of " + std::to_string(receivers.size()) + " rows and " +
+                    std::to_string(in.vpls.size()) + " lights of VPLs",
+                "ask for fewer rows, or keep fewer VPLs with vpl-eliminate -n");
   Columns columns(in.vpls.size(), receivers.size());
   const auto running = in.progress.before(phase, receivers.size());
   parallelFor(receivers.size(), 1, [&](size_t row) {
@@ -63,8 +69,12 @@ double Bundle::cost() const {
 
 double Bundle::apart(const Columns& columns, size_t i) const {
   const std::span<const float> column = columns[i];
-  double product = 0.0;
-  for (size_t k = 0; k < column.size(); ++k) product += sum_[k] * double{column[k]};
+  std::array<double, 8> parts{};  // sums that the compiler can vectorise
+  size_t k = 0;
+  for (; k + parts.size() <= column.size(); k += parts.size())
+    for (size_t j = 0; j < parts.size(); ++j) parts[j] += sum_[k + j] * double{column[k + j]};
+  double product = std::accumulate(parts.begin(), parts.end(), 0.0);
+  for (; k < column.size(); ++k) product += sum_[k] * double{column[k]};
   return std::max(0.0, norms_ * columns.norm(i) - product);
 }
 
@@ -74,18 +84,31 @@ Bundle bundleOf(std::span<const uint32_t> cluster, const Columns& columns) {
   return bundle;
 }
 
-VplDraw drawFrom(std::span<const uint32_t> cluster, std::span<const double> shares, Rng& rng) {
+namespace {
+
+std::vector<double> cdfOf(std::span<const uint32_t> cluster, std::span<const double> shares) {
   std::vector<double> own;
+  own.reserve(cluster.size());
   for (const uint32_t i : cluster) own.push_back(shares[i]);
-  const std::vector<double> cdf = makeCdf<double>(own);
+  return makeCdf<double>(own);
+}
+
+VplDraw drawByCdf(std::span<const uint32_t> cluster, std::span<const double> cdf, Rng& rng) {
   float u = rng.next();
   const size_t k = sampleCdf<double>(cdf, u);
-  return {cluster[k], static_cast<float>(1.0 / cdfShare<double>(cdf, k))};
+  return {cluster[k], static_cast<float>(1.0 / cdfProbability<double>(cdf, k))};
+}
+
+}  // namespace
+
+VplDraw drawFrom(std::span<const uint32_t> cluster, std::span<const double> shares, Rng& rng) {
+  return drawByCdf(cluster, cdfOf(cluster, shares), rng);
 }
 
 void ClusterDraws::add(std::span<const uint32_t> cluster, std::span<const double> shares,
                        Rng& rng) {
-  for (auto& draws : draws_) draws.push_back(drawFrom(cluster, shares, rng));
+  const std::vector<double> cdf = cdfOf(cluster, shares);
+  for (auto& draws : draws_) draws.push_back(drawByCdf(cluster, cdf, rng));
 }
 
 Gathered ClusterDraws::gather(const GatherInputs& in, const TileReceivers& tile, size_t i) const {
@@ -109,8 +132,11 @@ std::vector<Cluster> clustersBySampling(const Cluster& vpls, const Columns& colu
   }
   std::vector<uint32_t> nearest(columns.size());
   parallelFor(vpls.size(), 64, [&](size_t k) {
-    const auto apart = [&](const auto& centre) { return centre.second.apart(columns, vpls[k]); };
-    nearest[vpls[k]] = std::ranges::min_element(centres, {}, apart)->first;
+    double least = INFINITY;
+    for (const auto& [centre, bundle] : centres) {
+      const double apart = bundle.apart(columns, vpls[k]);
+      if (apart < least) least = apart, nearest[vpls[k]] = centre;
+    }
   });
   std::map<uint32_t, Cluster> clusters;
   for (const uint32_t i : vpls) clusters[nearest[i]].push_back(i);

@@ -53,7 +53,7 @@ inline std::vector<PlanCount> entriesOf(size_t rows, size_t columns) {
 }
 
 // Evaluates the rows of these receivers, one shadow ray for each VPL that can light it. Progress
-// counts rows.
+// counts rows. Throws MemoryError if they do not fit.
 Columns columnsAt(const GatherInputs& in, std::span<const SurfacePoint> receivers,
                   std::string_view phase);
 

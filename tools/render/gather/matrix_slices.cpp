@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "core/parallel.h"
-#include "tools/common/files/streams.h"
+#include "core/random_streams.h"
 
 namespace bnvpl {
 
@@ -13,10 +13,15 @@ namespace {
 
 constexpr double kCommonShare = 0.3;  // clusters found for all slices, over those of a slice
 
-using Vector = std::valarray<double>;
 using Placed = PlacedPoint;
 
-Vector placeOf(const SurfacePoint& p, float scale) {
+double squaredDistance(const Placement& a, const Placement& b) {
+  double sum = 0.0;
+  for (size_t k = 0; k < a.size(); ++k) sum += (a[k] - b[k]) * (a[k] - b[k]);
+  return sum;
+}
+
+Placement placeOf(const SurfacePoint& p, float scale) {
   const Vec3 x = p.position, n = p.ns * scale;
   return {double{x.x}, double{x.y}, double{x.z}, double{n.x}, double{n.y}, double{n.z}};
 }
@@ -35,8 +40,8 @@ size_t divideAtMiddle(std::span<T> all, const Value& value) {
 
 // Splits points along the longest of six sides until a slice has at most `most` points.
 void slice(std::span<Placed> points, size_t most, Rng& rng, std::vector<Placed>& slices) {
-  Vector middle(6), side(6);
-  for (size_t a = 0; a < 6; ++a) {
+  Placement middle{}, side{};
+  for (size_t a = 0; a < middle.size(); ++a) {
     const auto on = [a](const Placed& p) { return p.at[a]; };
     const auto ends = std::ranges::minmax_element(points, {}, on);
     const double low = on(*ends.min), high = on(*ends.max);
@@ -47,7 +52,7 @@ void slice(std::span<Placed> points, size_t most, Rng& rng, std::vector<Placed>&
     slices.push_back({middle, points[pick].point});
     return;
   }
-  const auto axis = std::max_element(begin(side), end(side)) - begin(side);
+  const auto axis = static_cast<size_t>(std::ranges::max_element(side) - side.begin());
   const size_t below = divideAtMiddle(points, [&](const Placed& p) { return p.at[axis]; });
   slice(points.first(below), most, rng, slices);
   slice(points.subspan(below), most, rng, slices);
@@ -65,7 +70,10 @@ Cluster splitOff(Cluster& cluster, const Columns& columns) {
     for (size_t k = 0; k < c.size(); ++k) sum += double{c[k]} * (double{a[k]} - double{b[k]});
     return sum;
   };
-  const size_t below = divideAtMiddle(std::span(cluster), along);
+  std::vector<std::pair<double, uint32_t>> placed;
+  for (const uint32_t i : cluster) placed.emplace_back(along(i), i);
+  const size_t below = divideAtMiddle(std::span(placed), [](const auto& p) { return p.first; });
+  for (size_t k = 0; k < placed.size(); ++k) cluster[k] = placed[k].second;
   const Cluster part(cluster.begin() + below, cluster.end());
   cluster.erase(cluster.begin() + below, cluster.end());
   return part;
@@ -76,18 +84,22 @@ Columns rowsAbout(const Placed& slice, const std::vector<Placed>& slices, size_t
                   const Columns& columns) {
   std::vector<size_t> order(slices.size());
   std::iota(order.begin(), order.end(), size_t{0});
-  std::ranges::stable_sort(order, {}, [&](size_t k) {
-    return ((slice.at - slices[k].at) * (slice.at - slices[k].at)).sum();
-  });
+  std::ranges::stable_sort(order, {},
+                           [&](size_t k) { return squaredDistance(slice.at, slices[k].at); });
   return columns.inRows(std::span(order).first(std::min(order.size(), count)));
 }
 
 }  // namespace
 
 size_t SlicePlan::sliceOf(const SurfacePoint& point) const {
-  const Vector here = placeOf(point, scale);
-  const auto apart = [&](const Placed& s) { return ((s.at - here) * (s.at - here)).sum(); };
-  return static_cast<size_t>(std::ranges::min_element(slices, {}, apart) - slices.begin());
+  const Placement here = placeOf(point, scale);
+  size_t nearest = 0;
+  double least = INFINITY;
+  for (size_t k = 0; k < slices.size(); ++k) {
+    const double d = squaredDistance(slices[k].at, here);
+    if (d < least) least = d, nearest = k;
+  }
+  return nearest;
 }
 
 SlicePlan makeSlicePlan(const GatherInputs& in, const Values& options) {
@@ -100,7 +112,7 @@ SlicePlan makeSlicePlan(const GatherInputs& in, const Values& options) {
   plan.scale = mean(seen.upper - seen.lower) / 8.0f;
   std::vector<Placed> points;
   for (const SurfacePoint& p : film) points.push_back({placeOf(p, plan.scale), p});
-  const uint64_t key = streamKey(in.seed, Stream::LightTree) + 1;
+  const uint64_t key = streamKey(in.seed, RandomStream::LightTree) + 1;
   Rng rng(key, 0);
   slice(points, std::max<size_t>(1, points.size() / options[kSlicesOption]), rng, plan.slices);
 

@@ -2,7 +2,7 @@
 // Matrix Slice Sampling for the Many-Lights Problem", SIGGRAPH Asia 2011).
 #pragma once
 
-#include <valarray>
+#include <array>
 #include <vector>
 
 #include "tools/render/gather/matrix_columns.h"
@@ -12,14 +12,16 @@ namespace bnvpl {
 inline constexpr WholeOption kSlicesOption =
     countOption("slices", "300", 0x1p20, "", "minimal number of groups of neighbouring points");
 inline constexpr WholeOption kColumnsOption =
-    countOption("columns", "400", 0x1p20, "", "clusters of VPLs for each slice");
+    countOption("columns", "600", 0x1p20, "", "clusters of VPLs for each slice");
 inline constexpr WholeOption kNeighbourSlicesOption =
     countOption("neighbour-slices", "8", 1024, "", "rows that refine a slice's clusters");
 
-// A point with its position and scaled normal; or a slice with its centre and a point that
-// represents it.
+// Position, and normal times a length.
+using Placement = std::array<double, 6>;
+
+// A point; or a slice with its centre and a point that represents it.
 struct PlacedPoint {
-  std::valarray<double> at;
+  Placement at;
   SurfacePoint point;
 };
 

@@ -5,7 +5,7 @@
 namespace bnvpl {
 
 Gathered PointGather::operator()(const Bsdf& bsdf, unsigned draws, Rng& rng,
-                                 const GroupSink& groups) const {
+                                 const LightGroupSink& groups) const {
   Gathered out;
   const VplSampler::Point point(sampler_, bsdf);
   if (point.dark()) return out;

@@ -12,7 +12,7 @@ class PointGather {
   PointGather(const Accelerator& accel, const VplLights& vpls, const LightTree& tree)
       : accel_(accel), vpls_(vpls), sampler_(tree) {}
   Gathered operator()(const Bsdf& bsdf, unsigned draws, Rng& rng,
-                      const GroupSink& groups = {}) const;
+                      const LightGroupSink& groups = {}) const;
 
  private:
   const Accelerator& accel_;

@@ -24,9 +24,11 @@ class ReceiverTreeBuilder {
       n.normals = {points_[i].ns};
       n.bsdf = bsdfs_[i];
     } else {
-      const size_t middle =
-          begin + splitNode(std::span(tree_.order).subspan(begin, end - begin),
-                            [&](uint32_t i, size_t axis) { return coordinate(i, axis); });
+      const NodeSplit split =
+          splitNode(std::span(tree_.order).subspan(begin, end - begin),
+                    [&](uint32_t i, size_t a) { return coordinate(points_[i], a, normalScale_); });
+      const size_t middle = begin + split.first;
+      n.axis = split.axis, n.middle = split.middle;
       n.left = build(begin, middle);
       n.right = build(middle, end);
       const ReceiverNode &a = tree_.nodes[n.left], &b = tree_.nodes[n.right];
@@ -44,10 +46,6 @@ class ReceiverTreeBuilder {
   }
 
  private:
-  float coordinate(uint32_t i, size_t axis) const {
-    return axis < 3 ? points_[i].position[axis] : normalScale_ * points_[i].ns[axis - 3];
-  }
-
   std::span<const SurfacePoint> points_;
   std::span<const ReceiverBsdf> bsdfs_;
   float normalScale_;

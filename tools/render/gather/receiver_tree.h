@@ -27,8 +27,17 @@ struct ReceiverNode {
   ReceiverBsdf bsdf;             // largest of the receivers
   uint32_t left = 0, right = 0;  // both are 0 in a leaf
   uint32_t begin = 0, end = 0;   // range of its receivers in ReceiverTree::order
+  // The left child has the receivers whose coordinate() along `axis` is below `middle`.
+  uint8_t axis = 0;
+  float middle = 0.0f;
   bool leaf() const { return left == 0; }
 };
+
+// Place of a point along one of six axes: those of its position, then those of its shading normal
+// times `normalScale`.
+inline float coordinate(const SurfacePoint& p, size_t axis, float normalScale) {
+  return axis < 3 ? p.position[axis] : normalScale * p.ns[axis - 3];
+}
 
 // Children stand behind their parents; a leaf has one receiver.
 struct ReceiverTree {

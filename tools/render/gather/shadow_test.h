@@ -7,18 +7,18 @@ namespace bnvpl {
 
 // Adds the contribution of VPL i, times `weight`. `groups` receives the radiance by light group.
 inline void addTransfer(const VplLights& vpls, size_t i, const VplTransfer& c, float weight,
-                        const GroupSink& groups, Gathered& out) {
+                        const LightGroupSink& groups, Gathered& out) {
   const Vec3 light = c.transfer * vpls.intensity[i] * weight;
   out.radiance += light;
   out.clamped += light * c.clampLoss;
   if (groups) vpls.addByGroup(i, c.transfer * weight, groups);
 }
 
-// Borrows all three. `groups` receives the radiance by light group.
+// Borrows accel, vpls and bsdf. `groups` receives the radiance by light group.
 class ShadowTest {
  public:
   ShadowTest(const Accelerator& accel, const VplLights& vpls, const Bsdf& bsdf,
-             const GroupSink& groups = {})
+             const LightGroupSink& groups = {})
       : accel_(accel),
         vpls_(vpls),
         bsdf_(bsdf),
@@ -45,7 +45,7 @@ class ShadowTest {
   const Accelerator& accel_;
   const VplLights& vpls_;
   const Bsdf& bsdf_;
-  GroupSink groups_;
+  LightGroupSink groups_;
   Vec3 from_;
 };
 

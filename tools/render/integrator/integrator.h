@@ -66,9 +66,9 @@ inline const CompensateMethod* compensationOf(const Values& options) {
   return &methodNamed(compensateMethods(), options[kCompensateSlot]);
 }
 // The gather's film filter; empty where there is none.
-inline FilmFilter gatherFilterOf(const Values& options) {
+inline GatherFilter gatherFilterOf(const Values& options) {
   const GatherMethod* gather = gatherOf(options);
-  return gather && gather->filmFilter ? gather->filmFilter(options) : FilmFilter{};
+  return gather && gather->gatherFilter ? gather->gatherFilter(options) : GatherFilter{};
 }
 // Whether it finds the sum over a pixel's samples instead of their light.
 inline bool gathersPixelSums(const Values& options) {

@@ -12,7 +12,7 @@ constexpr OptionKey<std::string> kLightKey{"light"};
 }  // namespace
 
 VplKind vplKindOf(const Values& options) {
-  return options.has(kLightKey) ? lightKindNamed(options[kLightKey]) : VplKind{};
+  return options.has(kLightKey) ? vplKindNamed(options[kLightKey]) : VplKind{};
 }
 
 void requireTakenLight(const Values& options) {

@@ -4,7 +4,7 @@
 #include <numeric>
 #include <queue>
 
-#include "tools/common/files/streams.h"
+#include "core/random_streams.h"
 #include "tools/render/light_tree/normal_cone.h"
 #include "tools/render/light_tree/orientation_split.h"
 #include "tools/render/light_tree/tree_building.h"
@@ -17,7 +17,7 @@ class Builder {
  public:
   Builder(const VplLights& vpls, uint64_t seed, LightSplit by, LightTree& tree)
       : vpls_(vpls),
-        key_(streamKey(seed, Stream::LightTree)),
+        key_(streamKey(seed, RandomStream::LightTree)),
         by_(by),
         tree_(tree),
         order_(vpls.size()) {
@@ -58,8 +58,9 @@ class Builder {
   size_t split(size_t begin, size_t end) {
     const std::span<uint32_t> elements = std::span(order_).subspan(begin, end - begin);
     if (by_ == LightSplit::Middle) {
-      return begin +
-             splitNode(elements, [&](uint32_t i, size_t axis) { return coordinate(i, axis); });
+      return begin + splitNode(elements, [&](uint32_t i, size_t axis) {
+                       return coordinate(i, axis);
+                     }).first;
     }
     const size_t first = splitByOrientation(vpls_, elements);
     return begin + (first > 0 && first < elements.size() ? first : elements.size() / 2);

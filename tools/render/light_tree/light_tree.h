@@ -60,7 +60,7 @@ struct LightTree {
   std::vector<Vec3> groupIntensity;  // `groups` for each node, which add up to its intensity
 
   // Adds the light of a cluster by group. `transfer`: light over intensity.
-  void addByGroup(uint32_t node, Vec3 transfer, const GroupSink& sink) const {
+  void addByGroup(uint32_t node, Vec3 transfer, const LightGroupSink& sink) const {
     for (uint32_t g = 0; g < groups; ++g)
       sink.add(g, transfer * groupIntensity[size_t{node} * groups + g]);
   }

@@ -10,7 +10,7 @@ namespace {
 // around the point is farther away than its centre (measured).
 constexpr float kClosest = 2.0f;
 // Least cosine with which spheres count, whose light may come from across a horizon.
-constexpr float kLeastOfSphere = 0.1f;
+constexpr float kMinOfSphere = 0.1f;
 
 __m128 all(float v) { return _mm_set1_ps(v); }
 __m128 load(const std::array<float, 4>& lanes) { return _mm_load_ps(lanes.data()); }  // aligned
@@ -28,7 +28,7 @@ struct SphereDirections {
   // Largest cosine between an axis and any direction into the sphere.
   __m128 most(__m128 ax, __m128 ay, __m128 az) const {
     return selectAtLeast(radius2, d2, all(1.0f),
-                         cosineOfLess(ax * x + ay * y + az * z, cosSphere, sinSphere));
+                         cosSubClamped(ax * x + ay * y + az * z, cosSphere, sinSphere));
   }
 };
 
@@ -115,7 +115,7 @@ VplSampler::Lanes VplSampler::Point::likelyOf(uint32_t node) const {
   const __m128 zero = _mm_setzero_ps();
   // Emission leaves in the opposite directions, so the axes are negated instead.
   const __m128 back = to.most(zero - load(f.ax), zero - load(f.ay), zero - load(f.az));
-  const __m128 least = Kind::fromCentre ? zero : all(kLeastOfSphere);
+  const __m128 least = Kind::fromCentre ? zero : all(kMinOfSphere);
   const __m128 emitter = larger(Kind::maxEmitted(back, load(f.cosHalf), load(f.sinHalf)), least);
   const __m128 cosine = larger(to.most(all(normal_.x), all(normal_.y), all(normal_.z)), least);
   __m128 value;

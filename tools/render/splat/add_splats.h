@@ -6,7 +6,7 @@
 
 #include "core/parallel.h"
 #include "core/progress.h"
-#include "core/resume.h"
+#include "core/work_controls.h"
 #include "tools/render/splat/splat.h"
 
 namespace bnvpl {
@@ -27,14 +27,14 @@ struct ShowNothing {
 // work can be interrupted only between rounds, after each of which shown() is called.
 template <typename Add, typename State, typename Shown = ShowNothing>
 void addSplats(const Splatter& splatter, uint64_t count, SplatProgress& done, const Add& add,
-               const ProgressFn& progress, const Resume& resume, const State& state,
+               const ProgressFn& progress, const WorkControls& controls, const State& state,
                Shown shown = {}) {
   constexpr uint64_t kPhotonsPerChunk = 64, kChunksPerRound = 64;
   std::vector<Splats> chunks(kChunksPerRound);
   while (done.photons < count) {
     constexpr uint64_t kPhotonsPerRound = kChunksPerRound * kPhotonsPerChunk;
     const uint64_t first = done.photons, round = first / kPhotonsPerRound;
-    if (!resume.shard.has(round)) {
+    if (!controls.shard.has(round)) {
       done.photons = (round + 1) * kPhotonsPerRound;
       continue;
     }
@@ -53,7 +53,7 @@ void addSplats(const Splatter& splatter, uint64_t count, SplatProgress& done, co
     done.traced += end - first;
     if (progress) progress(end - first);
     shown();
-    if (end < count && resume.pause && resume.pause()) resume.save(state());
+    if (end < count && controls.pause && controls.pause()) controls.save(state());
   }
 }
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/parallel.h"
-#include "tools/common/files/streams.h"
+#include "core/random_streams.h"
 #include "tools/render/camera_vertex.h"
 #include "tools/render/gather/gather.h"
 
@@ -17,7 +17,7 @@ class FilmRays {
         lights_(lights),
         filter_(filter),
         spatialLights_(spatialLights),
-        key_(streamKey(seed, Stream::FilmPoints)) {}
+        key_(streamKey(seed, RandomStream::FilmPoints)) {}
 
   // The shading point; its triangle is kNone if there is none. `emission` receives the emission on
   // the camera path, mean of the channels.

@@ -29,9 +29,9 @@ struct RayContributions {
   std::vector<Vec3> groupSums, vertexGroups;
 
   void tellApart(uint32_t count) { groups = count, groupSums.resize(3 * size_t{count}); }
-  GroupSink directGroups() { return sinkOf(0); }
-  GroupSink indirectGroups() { return sinkOf(1); }
-  GroupSink vertexLightGroups() { return sinkOf(2); }
+  LightGroupSink directGroups() { return sinkOf(0); }
+  LightGroupSink indirectGroups() { return sinkOf(1); }
+  LightGroupSink vertexLightGroups() { return sinkOf(2); }
 
   // Adds the mean of the rays, with `reused` in place of the mean of vertexLight: the light of the
   // vertices that the group's rays have found.
@@ -56,7 +56,7 @@ struct RayContributions {
   }
 
  private:
-  GroupSink sinkOf(size_t kind) { return {groups > 0 ? &groupSums[kind * groups] : nullptr}; }
+  LightGroupSink sinkOf(size_t kind) { return {groups > 0 ? &groupSums[kind * groups] : nullptr}; }
 };
 
 // The shading point that rays leave.
@@ -64,7 +64,7 @@ struct RayOrigin {
   const Directions& directions;
   Vec3 throughput;              // from the shading point to the camera
   const LearnedLight& learned;  // how its shadow rays choose lights, for MIS with the rays
-  PhotonMis shared;             // MIS with caustic photons
+  PhotonMis photons;            // MIS with caustic photons
   bool reuse = false;           // whether other samples reuse the vertices
 };
 
@@ -99,7 +99,7 @@ void sendRays(const Accelerator& accel, const RayOrigin& from, unsigned misRays,
       segments[alive] = {next.wi,
                          from.throughput * next.weight,
                          {next.pdf * static_cast<float>(misRays), point.position, LightChoice::Each,
-                          from.learned, from.shared},
+                          from.learned, from.photons},
                          &found[alive],
                          rng};
       ++alive;

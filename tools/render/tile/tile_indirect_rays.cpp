@@ -88,7 +88,7 @@ void TileIndirectRays::sendFrom(size_t sample, unsigned rays, uint64_t key) {
   const SpecularPath& path = points_.paths[sample];
   parts_.rays->send({directions_[points_.indexOf(sample)], path.throughput, learned_,
                      parts_.caustics && path.specularBounces == 0
-                         ? parts_.caustics->shared(path.hit, tile_.samples[sample].origin)
+                         ? parts_.caustics->photonMis(path.hit, tile_.samples[sample].origin)
                          : PhotonMis{},
                      parts_.reuse > 1},
                     rays, sampleIndexOf(tile_, sample) * rays, key, found_[sample]);

@@ -72,7 +72,7 @@ ShadingPoints TileIntegrator::traceCameraPaths(const TileSamples& tile,
 // Direct light at a shading point by shadow rays, with MIS weights against the rays for indirect
 // light.
 Vec3 TileIntegrator::directAt(const Bsdf& bsdf, const LearnedLight& learned, uint32_t sampleIndex,
-                              uint64_t key, Rng& rng, const GroupSink& groups) const {
+                              uint64_t key, Rng& rng, const LightGroupSink& groups) const {
   const Reflected reflected{bsdf};
   const LightSampling sampling{learned, LightChoice::Each, {}, groups};
   if (!learned.strata) {
@@ -98,7 +98,8 @@ void TileIntegrator::gatherVpls(const TileSamples& tile, const ShadingPoints& po
   if (tile.groups > 0) receivers.groupSums = groups.data();
   receivers.marginalCost = allocation.marginalCost;
   if (allocation.marginalCost > 0.0) {
-    // Both lights are squares summed over three channels; of equal channels the sum is this root.
+    // floorLight and medianLight are squares summed over the channels. For grey light of square q
+    // the sum of the channels is sqrt(3 q).
     receivers.otherLight = meanDirect.x + meanDirect.y + meanDirect.z +
                            static_cast<float>(std::sqrt(3.0 * allocation.floorLight));
     receivers.medianTileLight = static_cast<float>(std::sqrt(3.0 * allocation.medianLight));
@@ -122,7 +123,8 @@ void TileIntegrator::gatherVpls(const TileSamples& tile, const ShadingPoints& po
     out.cut += gathered[i].cut;
     out.shadowRays += gathered[i].shadowRays;
     out.counts = gathered[i].counts;
-    const GroupSink indirect = tile.samples[i].groups.indirect().times(points.paths[i].throughput);
+    const LightGroupSink indirect =
+        tile.samples[i].groups.indirect().times(points.paths[i].throughput);
     for (uint32_t g = 0; g < tile.groups; ++g) indirect.add(g, groups[i * tile.groups + g]);
   }
 }
@@ -144,7 +146,7 @@ double TileIntegrator::compensateTile(const TileSamples& tile, const ShadingPoin
     cost += cost::kCluster * found[i].cut;
     for (size_t k = parts_.gatherCounters; k < kMaxCounters; ++k)
       out.counts[k] = found[i].counts[k - parts_.gatherCounters];
-    const GroupSink indirect = tile.samples[i].groups.indirect().times(throughput);
+    const LightGroupSink indirect = tile.samples[i].groups.indirect().times(throughput);
     for (uint32_t g = 0; g < tile.groups; ++g) indirect.add(g, groups[i * tile.groups + g]);
   }
   return cost;

@@ -20,7 +20,7 @@ class TileIntegrator {
  private:
   ShadingPoints traceCameraPaths(const TileSamples& tile, const LearnedLight& learned) const;
   Vec3 directAt(const Bsdf& bsdf, const LearnedLight& learned, uint32_t sampleIndex, uint64_t key,
-                Rng& rng, const GroupSink& groups) const;
+                Rng& rng, const LightGroupSink& groups) const;
   void gatherVpls(const TileSamples& tile, const ShadingPoints& points,
                   const SampleAllocation& allocation, Vec3 meanDirect) const;
   double compensateTile(const TileSamples& tile, const ShadingPoints& points) const;

@@ -114,7 +114,7 @@ void LocalLights::findRadiance(const SurfacePoint& hit, Rng& rng, Light& light,
     const unsigned lightRays = first ? kFirstLightRays : kLaterLightRays;
     LearnedStrata strata;
     if (vertexLights_.spatial) strata = vertexLights_.spatial->at(point.position, point.ng);
-    const GroupSink sink = sinkTo(groups).times(throughput);
+    const LightGroupSink sink = sinkTo(groups).times(throughput);
     const LightNumbers numbers =
         strata.all && lightRays > 1 ? LightNumbers::sequence(rng) : LightNumbers(rng);
     const LightSampling sampling{
@@ -139,7 +139,7 @@ void LocalLights::findRadiance(const SurfacePoint& hit, Rng& rng, Light& light,
   }
 }
 
-Gathered LocalLights::at(const Bsdf& receiver, uint64_t key, const GroupSink& groups) const {
+Gathered LocalLights::at(const Bsdf& receiver, uint64_t key, const LightGroupSink& groups) const {
   Gathered out;
   for (size_t i = 0; i < lights_.size(); ++i) {
     const Light& light = lights_[i];

@@ -40,7 +40,7 @@ class LocalLights {
   size_t raysSent() const { return raysSent_; }
   size_t shadowRays() const { return shadowRays_; }
   // Light of all local lights at a receiver; its random numbers depend on `key`.
-  Gathered at(const Bsdf& receiver, uint64_t key, const GroupSink& groups) const;
+  Gathered at(const Bsdf& receiver, uint64_t key, const LightGroupSink& groups) const;
 
  private:
   struct Light {

@@ -9,13 +9,15 @@ namespace bnvpl {
 
 namespace {
 
-// Reach, in r_max, of VPLs from vpl-place --method light, which have no reach of their own.
+// Reach, in radii of the VPL, of those from vpl-place --method light, which have no reach of their
+// own.
 constexpr float kReachWithoutPhotons = 2.0f;
 // A VPL's area is measured with kAreaPoints points of its disk, or up to kMaxAreaPoints until
 // kMinFound of them lie on its surface. If fewer do, the surface is a sliver of unknown area.
 constexpr uint32_t kAreaPoints = 32, kMaxAreaPoints = 256, kMinFound = 8;
-// A ray shorter than this many r_max ends in a crevice or a corner, where the light differs from
-// the mean over the VPL's surface: further rays find the point's own light instead (measured).
+// A ray shorter than this many radii of a VPL ends in a crevice or a corner, where the light
+// differs from the mean over the VPL's surface: further rays find the point's own light instead
+// (measured).
 constexpr float kShortRay = 0.7f;
 constexpr float kUnknown = -1.0f;  // an area that is not measured yet
 

@@ -3,11 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include "core/random_streams.h"
 #include "core/sampling.h"
 #include "tests/support/pipeline.h"
 #include "tests/support/z_test.h"
 #include "tests/transport/plain_scene.h"
-#include "tools/common/files/streams.h"
 
 namespace bnvpl::test {
 namespace {
@@ -118,7 +118,7 @@ TEST(NearField, VplsKnowTheRadianceAroundThem) {
   const NearField nearField(lit, world.accel, clamp);
   double sum = 0.0;
   int known = 0;
-  Rng rng(streamKey(1, Stream::PixelSamples), 0);
+  Rng rng(streamKey(1, RandomStream::PixelSamples), 0);
   for (int k = 0; k < 4000; ++k) {
     SurfacePoint hit;
     // Points are uniform on the six faces of the unit cube.
@@ -163,7 +163,7 @@ TEST(NearField, RadianceUsesTheCoveredAreaAndSliversAreUnknown) {
     lit.relativeError = {0.1f};
     SurfacePoint hit;
     EXPECT_TRUE(accel.closestHit({0.3f, 1.0f, 0.0f}, {0, -1, 0}, hit));
-    Rng rng(streamKey(1, Stream::PixelSamples), 0);
+    Rng rng(streamKey(1, RandomStream::PixelSamples), 0);
     const Uncovered uncovered = uncoveredAt(NearField(lit, accel, 2.0f), hit, 1.0f, rng);
     EXPECT_NEAR(uncovered.share, 0.75f, 1e-5f);  // 1 - (distance / clamp)^2
     return uncovered.multiBounceRadiance;

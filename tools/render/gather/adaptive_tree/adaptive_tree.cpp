@@ -37,7 +37,7 @@ class AdaptiveTree {
     }
   }
 
-  Gathered gather(const Bsdf& bsdf, uint64_t key, const GroupSink& groups) const {
+  Gathered gather(const Bsdf& bsdf, uint64_t key, const LightGroupSink& groups) const {
     Gathered out;
     if (tree_.nodes.empty()) return out;
     const Vec3 at = bsdf.point().position, normal = bsdf.point().ns;
@@ -84,7 +84,7 @@ class AdaptiveTree {
     const float perDistance = 1.0f / std::sqrt(d2), sinSphere = std::sqrt(radius2) * perDistance;
     const float cosSphere = sineOf(sinSphere);
     const auto largest = [&](Vec3 axis) {
-      return cosineOfLess(dot(axis, to) * perDistance, cosSphere, sinSphere);
+      return cosSubClamped(dot(axis, to) * perDistance, cosSphere, sinSphere);
     };
     const float receiver = largest(normal), back = largest(-n.axis);
     if (!(receiver > 0.0f)) return 0.0f;
@@ -131,7 +131,7 @@ class AdaptiveTree {
 
 Gather make(const GatherInputs& in, const Values& options) {
   const auto tree = std::make_shared<const AdaptiveTree>(in, options[kSplitOption]);
-  return gatherEach([tree](const Bsdf& bsdf, uint64_t key, const GroupSink& groups) {
+  return gatherEach([tree](const Bsdf& bsdf, uint64_t key, const LightGroupSink& groups) {
     return tree->gather(bsdf, key, groups);
   });
 }

@@ -8,7 +8,7 @@ namespace bnvpl::methods::gather::all {
 namespace {
 
 Gathered gatherAll(const Accelerator& accel, const VplLights& vpls, const Bsdf& bsdf,
-                   const GroupSink& groups) {
+                   const LightGroupSink& groups) {
   Gathered out;
   out.cut = static_cast<uint32_t>(vpls.size());
   const Vec3 from = accel.offsetOrigin(bsdf.point().position, bsdf.point().ng);
@@ -31,7 +31,7 @@ Gathered gatherAll(const Accelerator& accel, const VplLights& vpls, const Bsdf& 
 
 Gather make(const GatherInputs& in, const Values&) {
   return gatherEach(
-      [&accel = in.accel, &vpls = in.vpls](const Bsdf& bsdf, const GroupSink& groups) {
+      [&accel = in.accel, &vpls = in.vpls](const Bsdf& bsdf, const LightGroupSink& groups) {
         return gatherAll(accel, vpls, bsdf, groups);
       });
 }

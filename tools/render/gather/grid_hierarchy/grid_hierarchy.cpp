@@ -3,7 +3,7 @@
 #include <array>
 #include <memory>
 
-#include "tools/common/files/streams.h"
+#include "core/random_streams.h"
 #include "tools/render/gather/gather.h"
 #include "tools/render/gather/grid_hierarchy/levels.h"
 #include "tools/render/gather/rgb_sum.h"
@@ -24,7 +24,7 @@ class Hierarchy {
   Hierarchy(const GatherInputs& in, float alpha)
       : accel_(in.accel),
         vpls_(in.vpls),
-        levels_(makeLevels(in.vpls, alpha, streamKey(in.seed, Stream::GridMembers))) {}
+        levels_(makeLevels(in.vpls, alpha, streamKey(in.seed, RandomStream::GridMembers))) {}
 
   Gathered gather(const Bsdf& bsdf, uint64_t key) const {
     Gathered out;
@@ -68,9 +68,9 @@ class Hierarchy {
 
 Gather make(const GatherInputs& in, const Values& options) {
   if (in.vpls.size() == 0)
-    return gatherEach([](const Bsdf&, const GroupSink&) { return Gathered{}; });
+    return gatherEach([](const Bsdf&, const LightGroupSink&) { return Gathered{}; });
   const auto levels = std::make_shared<const Hierarchy>(in, options.real32(kAlphaOption));
-  return gatherEach([levels](const Bsdf& bsdf, uint64_t key, const GroupSink&) {
+  return gatherEach([levels](const Bsdf& bsdf, uint64_t key, const LightGroupSink&) {
     return levels->gather(bsdf, key);
   });
 }

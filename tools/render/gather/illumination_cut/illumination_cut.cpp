@@ -51,7 +51,7 @@ Gather make(const GatherInputs& in, const Values& options) {
       in,
       {double{options.real32(kErrorOption)}, static_cast<size_t>(options[kVisibilityRaysOption])}));
   Gather gather = gatherEach(
-      [in, plan](const Bsdf& bsdf, const GroupSink&) { return gatherPairs(in, *plan, bsdf); });
+      [in, plan](const Bsdf& bsdf, const LightGroupSink&) { return gatherPairs(in, *plan, bsdf); });
   gather.planned = {{"plan_pairs", "pairs found for the film", double(plan->pairs.size())},
                     {"plan_rays", "shadow rays by which they were found", double(plan->rays)}};
   return gather;

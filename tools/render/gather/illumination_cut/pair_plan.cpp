@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <deque>
 #include <numeric>
-#include <queue>
 
+#include "core/memory.h"
 #include "core/parallel.h"
 #include "tools/render/gather/shadow_test.h"
 
@@ -17,7 +18,7 @@ namespace {
 constexpr size_t kImageClusters = 100, kImageReceivers = 16;
 // Least light of a receiver, over the mean of the image: darker ones allow the error of this one.
 constexpr double kFloor = 0.01;
-// Nodes of receivers from which the threads begin, and receivers up to which each traces a ray.
+// Pairs from which the threads begin, and receivers up to which each traces a ray.
 constexpr size_t kStarts = 2000, kTraced = 8;
 
 class PairPlanner {
@@ -29,11 +30,16 @@ class PairPlanner {
     placeReceivers();
     if (plan_.tree.nodes.empty() || in_.tree.nodes.empty()) return;
     estimateImage();
-    const std::vector<uint32_t> starts =
-        opened(kStarts, [](const ReceiverNode& n) { return double(n.end - n.begin); });
+    std::vector<Found> all;
+    std::deque<Pair> starts{{0, 0}};
+    while (!starts.empty() && starts.size() < kStarts) {
+      const Pair first = starts.front();
+      starts.pop_front();
+      refineOnce(
+          first, [&](Pair p) { starts.push_back(p); }, all);
+    }
     std::vector<std::vector<Found>> found(starts.size());
     parallelFor(starts.size(), 1, [&](size_t k) { refine(starts[k], found[k]); });
-    std::vector<Found> all;
     for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());
     std::ranges::stable_sort(all, {}, [](const Found& f) { return f.receivers; });
     plan_.begin.assign(plan_.tree.nodes.size() + 1, 0);
@@ -46,6 +52,9 @@ class PairPlanner {
   }
 
  private:
+  struct Pair {
+    uint32_t receivers, light;
+  };
   struct Found {
     uint32_t receivers;
     LightPair pair;
@@ -64,24 +73,6 @@ class PairPlanner {
     plan_.normalScale = kNormalScale * scene().bounds.diagonal();
     plan_.tree = buildReceiverTree(points_, bsdfs, plan_.normalScale);
     plan_.begin.assign(plan_.tree.nodes.size() + 1, 0);
-  }
-
-  // Nodes of the receivers' tree: the one of largest weight is opened until there are `count`.
-  template <typename Weight>
-  std::vector<uint32_t> opened(size_t count, const Weight& weight) const {
-    std::priority_queue<std::pair<double, uint32_t>> open;
-    const auto push = [&](uint32_t n) {
-      open.emplace(plan_.tree.nodes[n].leaf() ? 0.0 : weight(plan_.tree.nodes[n]), n);
-    };
-    push(0);
-    while (open.size() < count && open.top().first > 0.0) {
-      const ReceiverNode& n = plan_.tree.nodes[open.top().second];
-      open.pop();
-      push(n.left), push(n.right);
-    }
-    std::vector<uint32_t> nodes;
-    for (; !open.empty(); open.pop()) nodes.push_back(open.top().second);
-    return nodes;
   }
 
   // Light of a receiver from a coarse cut, channels added.
@@ -131,26 +122,36 @@ class PairPlanner {
     }
   }
 
-  // Opens the larger of the two clusters until one VPL may represent its cluster for every receiver
-  // of the node.
-  void refine(uint32_t start, std::vector<Found>& found) const {
-    std::vector<std::array<uint32_t, 2>> open{{start, 0}};
-    while (!open.empty()) {
-      const auto [r, l] = open.back();
-      open.pop_back();
-      const ReceiverNode& receivers = plan_.tree.nodes[r];
-      const LightNode& lights = in_.tree.nodes[l];
-      const double bound = double{pairBound(lights, receivers, nullptr)};
-      // A single VPL represents itself without an error.
-      if (lights.leaf()) {
-        found.push_back({r, {l, false}});
-      } else if (bound < options_.error * double{least_[r]}) {
-        decideVisibility(r, l, found);
-      } else if (!receivers.leaf() && receivers.bounds.diagonal() > lights.bounds.diagonal()) {
-        open.push_back({receivers.right, l}), open.push_back({receivers.left, l});
-      } else {
-        open.push_back({r, lights.right}), open.push_back({r, lights.left});
-      }
+  // Ends with a pair whose one VPL may represent its cluster for every receiver of the node, or
+  // opens the larger of the two clusters.
+  template <typename Open>
+  void refineOnce(Pair pair, const Open& open, std::vector<Found>& found) const {
+    const auto [r, l] = pair;
+    const ReceiverNode& receivers = plan_.tree.nodes[r];
+    const LightNode& lights = in_.tree.nodes[l];
+    // A single VPL represents itself without an error.
+    if (lights.leaf()) {
+      found.push_back({r, {l, false}});
+    } else if (double{pairBound(lights, receivers, nullptr)} < options_.error * double{least_[r]}) {
+      decideVisibility(r, l, found);
+    } else if (!receivers.leaf() && receivers.bounds.diagonal() > lights.bounds.diagonal()) {
+      open({receivers.right, l}), open({receivers.left, l});
+    } else {
+      open({r, lights.right}), open({r, lights.left});
+    }
+  }
+
+  void refine(Pair start, std::vector<Found>& found) const {
+    std::vector<Pair> pairs{start};
+    while (!pairs.empty()) {
+      const Pair last = pairs.back();
+      pairs.pop_back();
+      refineOnce(
+          last, [&](Pair p) { pairs.push_back(p); }, found);
+      constexpr size_t kCheckedPairs = 1 << 16;
+      if (found.size() % kCheckedPairs == kCheckedPairs - 1)  // there is room for as many again
+        requireMemory(double(sizeof(Found) * found.size()), "pairs of points and clusters",
+                      "raise --error, or render fewer pixels at a time");
     }
   }
 

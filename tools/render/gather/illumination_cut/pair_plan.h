@@ -25,8 +25,8 @@ struct PairPlan {
   std::vector<LightPair> pairs;
   uint64_t rays = 0;  // shadow rays that the plan took
 
-  // Calls fn for every pair of a point: those of the nodes on the way to the film's point that is
-  // about the nearest, in position and normal.
+  // Calls fn for every pair of a point: those of the nodes on the way to the leaf in whose part of
+  // space it lies, by position and normal. A film's point comes to its own leaf.
   template <typename Fn>
   void forEachPair(const SurfacePoint& at, const Fn& fn) const {
     if (tree.nodes.empty()) return;
@@ -34,16 +34,8 @@ struct PairPlan {
       for (uint32_t k = begin[node]; k < begin[node + 1]; ++k) fn(pairs[k]);
       const ReceiverNode& n = tree.nodes[node];
       if (n.leaf()) return;
-      node = apart(tree.nodes[n.left], at) <= apart(tree.nodes[n.right], at) ? n.left : n.right;
+      node = coordinate(at, n.axis, normalScale) < n.middle ? n.left : n.right;
     }
-  }
-
- private:
-  // Squared distance from a node, in the space in which the tree was split.
-  float apart(const ReceiverNode& n, const SurfacePoint& at) const {
-    const bool inside = dot(n.normals.axis, at.ns) >= n.normals.cosHalfAngle;
-    const float turned = inside ? 0.0f : lengthSquared(n.normals.axis - at.ns);
-    return n.bounds.distanceSquared(at.position) + normalScale * normalScale * turned;
   }
 };
 

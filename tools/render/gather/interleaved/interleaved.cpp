@@ -2,6 +2,7 @@
 // gather different subsets of the VPLs, and a filter that stops at discontinuities averages them.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <memory>
 
 #include "tools/render/gather/rgb_sum.h"
@@ -33,7 +34,8 @@ bool alike(const PixelSurface& a, const PixelSurface& b) {
          std::abs(a.depth - b.depth) < kMaxDepth * std::min(a.depth, b.depth);
 }
 
-// Mean over the n x n pixels around one that see its surface. At the border of the film the window
+// Mean over the n x n pixels around one that see its surface, in each channel over those that have
+// albedo there. At the border of the film the window
 // moves inwards, so that it always holds every subset once.
 FilteredLight averaged(const FilmSurfaces& film, uint32_t side, uint32_t x, uint32_t y) {
   const auto first = [side](uint32_t at, uint32_t size) {
@@ -43,20 +45,26 @@ FilteredLight averaged(const FilmSurfaces& film, uint32_t side, uint32_t x, uint
   const PixelSurface& own = film.at(x, y);
   if (!(own.depth > 0.0f)) return {own.light, 0};
   FilteredLight out;
+  Vec3 known;
   for (uint32_t v = y0; v < std::min(film.height, y0 + side); ++v) {
     for (uint32_t u = x0; u < std::min(film.width, x0 + side); ++u) {
       const PixelSurface& other = film.at(u, v);
       const bool self = u == x && v == y;
       if (!self && !alike(own, other)) continue;
-      out.light += other.light;
+      for (int c = 0; c < 3; ++c) {
+        if (std::isnan(other.light[c])) continue;
+        out.light[c] += other.light[c];
+        known[c] += 1.0f;
+      }
       ++out.pixels;
     }
   }
-  out.light *= 1.0f / static_cast<float>(out.pixels);
+  for (int c = 0; c < 3; ++c)
+    if (known[c] > 0.0f) out.light[c] /= known[c];
   return out;
 }
 
-FilmFilter filmFilter(const Values& options) {
+GatherFilter gatherFilter(const Values& options) {
   const uint32_t side = sideOf(options);
   if (side == 1) return {};
   return {side - 1, [side](const FilmSurfaces& film, uint32_t x, uint32_t y) {
@@ -111,7 +119,7 @@ const GatherMethod method{
     .options = kOptions,
     .make = make,
     .counters = kCounters,
-    .filmFilter = filmFilter,
+    .gatherFilter = gatherFilter,
     .lightGroups = false};
 
 }  // namespace bnvpl::methods::gather::interleaved

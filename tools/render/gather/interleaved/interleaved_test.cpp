@@ -60,6 +60,33 @@ TEST(Interleaved, TheFilterKeepsTheEnergyOfAPlane) {
   }
 }
 
+// Two pixels of a plane that is white, and one between them that is red. Their subsets sum up to 1,
+// 3 and 2; the red pixel knows nothing of green light.
+TEST(Interleaved, RedPixelsDarkenNoOtherChannel) {
+  std::vector<PixelSums> film(3);
+  std::vector<PixelCounts> counts(3);
+  for (size_t i = 0; i < film.size(); ++i) {
+    PixelSums& p = film[i];
+    p.sum[PixelSums::kHits] = 1.0, p.sum[PixelSums::kDepth] = 2.0;
+    p.sum[PixelSums::kNormal + 2] = 1.0;
+    for (size_t c = 0; c < 3; ++c) {
+      p.sum[PixelSums::kAlbedo + c] = i == 1 && c > 0 ? 0.0 : 0.5;
+      p.sum[PixelSums::kGathered + c] = p.sum[PixelSums::kAlbedo + c] * (i == 0   ? 1
+                                                                         : i == 1 ? 3
+                                                                                  : 2);
+    }
+  }
+  const GatherMethod& method = methodNamed(gatherMethods(), "interleaved");
+  const Values options = resolve(renderSpec(), {{"gather", "interleaved"}, {"interleave", "3"}});
+  applyFilter(
+      method.gatherFilter(options), 3, {0, 0, 3, 1}, [](size_t) { return uint64_t{1}; }, film,
+      counts);
+  EXPECT_NEAR(film[0].sum[PixelSums::kGathered], 0.5 * 2.0, 1e-6);
+  EXPECT_NEAR(film[0].sum[PixelSums::kGathered + 1], 0.5 * 1.5, 1e-6);
+  EXPECT_EQ(film[1].sum[PixelSums::kGathered + 1], 0.0);
+  EXPECT_NEAR(film[2].sum[PixelSums::kGathered + 2], 0.5 * 1.5, 1e-6);
+}
+
 // A filter that crossed the silhouettes of the blocks would bring the light of the wall behind.
 TEST(Interleaved, TheFilterStopsAtDiscontinuities) {
   const GatherCase& c = *gatherCases().front();

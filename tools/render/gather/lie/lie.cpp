@@ -29,8 +29,8 @@ constexpr std::array kCounters{
     Counter{"classrays", "rays of cells",
             "rays that classified VPLs, shared among the film's points in the sample's cells"}};
 
-Gathered gatherCell(const GatherInputs& in, const LightCells& cells, const Bsdf& bsdf,
-                    const GroupSink& groups) {
+Gathered gatherCell(const GatherInputs& in, const LightCells& cells, const Bsdf& bsdf, uint64_t key,
+                    const LightGroupSink& groups) {
   Gathered out;
   RgbSum total, clamped;
   const Vec3 from = in.accel.offsetOrigin(bsdf.point().position, bsdf.point().ng);
@@ -53,7 +53,7 @@ Gathered gatherCell(const GatherInputs& in, const LightCells& cells, const Bsdf&
       bsdf.point().position, [&](const LightRun& run) { add(run, true); },
       [&](const LightRun& run) { add(run, false); });
   out.counts[1] = static_cast<uint32_t>(in.vpls.size()) - out.cut;
-  out.counts[2] = static_cast<uint32_t>(std::lround(raysEach));
+  out.counts[2] = static_cast<uint32_t>(raysEach + Rng(key, 0).next());  // right on average
   out.radiance = total.toVec3();
   out.clamped = clamped.toVec3();
   return out;
@@ -63,8 +63,8 @@ Gather make(const GatherInputs& in, const Values& options) {
   const auto cells = std::make_shared<const LightCells>(
       in, CellOptions{static_cast<uint32_t>(options[kClassRaysOption]),
                       static_cast<uint32_t>(options[kLevelsOption]), options[kRunsOption]});
-  return gatherEach([in, cells](const Bsdf& bsdf, const GroupSink& groups) {
-    return gatherCell(in, *cells, bsdf, groups);
+  return gatherEach([in, cells](const Bsdf& bsdf, uint64_t key, const LightGroupSink& groups) {
+    return gatherCell(in, *cells, bsdf, key, groups);
   });
 }
 

@@ -6,14 +6,14 @@
 
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "tools/common/files/streams.h"
+#include "core/random_streams.h"
 
 namespace bnvpl::methods::gather::lie {
 
 namespace {
 
 // Cells of up to so many points are not divided: their rays would not be repaid.
-constexpr uint32_t kLeastPoints = 64;
+constexpr uint32_t kMinPoints = 64;
 // Size of the root beyond the film's points, which takes in samples beside them.
 constexpr float kMargin = 0.005f;
 // Pairs of a point and a VPL that are drawn until enough of them face each other, for each ray.
@@ -33,7 +33,10 @@ void append(std::vector<LightRun>& runs, const LightNode& n) {
 class CellBuilder {
  public:
   CellBuilder(const GatherInputs& in, const CellOptions& options, LightCells& out)
-      : in_(in), options_(options), key_(streamKey(in.seed, Stream::LightTree) + 3), out_(out) {}
+      : in_(in),
+        options_(options),
+        key_(streamKey(in.seed, RandomStream::LightTree) + 3),
+        out_(out) {}
 
   void run() {
     placePoints();
@@ -62,7 +65,7 @@ class CellBuilder {
  private:
   using Nodes = std::vector<uint32_t>;  // nodes of the light tree, from left to right
 
-  static bool divisible(const LightCell& cell) { return cell.end - cell.begin > kLeastPoints; }
+  static bool divisible(const LightCell& cell) { return cell.end - cell.begin > kMinPoints; }
 
   // Sorts the film's points by octants.
   void placePoints() {
@@ -156,7 +159,7 @@ class CellBuilder {
   // Rays that must agree: more for more pairs, of which few agree by chance.
   uint64_t raysFor(const LightCell& cell, const LightNode& n) const {
     const double pairs = double(cell.end - cell.begin) * double(n.end - n.begin);
-    const double more = std::max(1.0, std::sqrt(pairs / kLeastPoints));
+    const double more = std::max(1.0, std::sqrt(pairs / kMinPoints));
     return static_cast<uint64_t>(std::ceil(more * double(options_.rays)));
   }
 

@@ -28,7 +28,7 @@ bool lessBound(const Cluster& a, const Cluster& b) {
 }
 
 Gathered gatherCut(const Accelerator& accel, const VplLights& vpls, const LightTree& tree,
-                   double error, size_t maxCut, const Bsdf& bsdf, const GroupSink& groups) {
+                   double error, size_t maxCut, const Bsdf& bsdf, const LightGroupSink& groups) {
   Gathered out;
   if (tree.nodes.empty()) return out;
   const Vec3 from = accel.offsetOrigin(bsdf.point().position, bsdf.point().ng);
@@ -91,7 +91,7 @@ Gather make(const GatherInputs& in, const Values& options) {
   const auto error = double{options.real32(kErrorOption)};
   const auto maxCut = static_cast<size_t>(options[kMaxCutOption]);
   return gatherEach([&accel = in.accel, &vpls = in.vpls, &tree = in.tree, error, maxCut](
-                        const Bsdf& bsdf, const GroupSink& groups) {
+                        const Bsdf& bsdf, const LightGroupSink& groups) {
     return gatherCut(accel, vpls, tree, error, maxCut, bsdf, groups);
   });
 }

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "tools/common/files/streams.h"
+#include "core/random_streams.h"
 #include "tools/render/gather/matrix_columns.h"
 
 namespace bnvpl::methods::gather::mrcs {
@@ -105,7 +105,7 @@ struct Plan {
 Plan planOf(const GatherInputs& in, const Values& options) {
   Plan plan;
   if (in.vpls.size() == 0) return plan;
-  Rng rng(streamKey(in.seed, Stream::LightTree) + 2, 0);
+  Rng rng(streamKey(in.seed, RandomStream::LightTree) + 2, 0);
   const std::vector<SurfacePoint> rows = rowPoints(in.filmPoints(), options[kRowsOption], rng);
   plan.rows = rows.size();
   const Columns columns = columnsAt(in, rows, "rows");

@@ -5,7 +5,7 @@
 #include <array>
 #include <memory>
 
-#include "tools/common/files/streams.h"
+#include "core/random_streams.h"
 #include "tools/render/gather/gather.h"
 #include "tools/render/gather/paquette/light_octree.h"
 #include "tools/render/gather/rgb_sum.h"
@@ -42,7 +42,7 @@ class Sphere {
   CosineRange cosines(Vec3 axis) const {
     if (inside_) return {};
     const float cosine = dot(axis, to_);
-    return {-cosineOfLess(-cosine, cos_, sin_), cosineOfLess(cosine, cos_, sin_)};
+    return {-cosSubClamped(-cosine, cos_, sin_), cosSubClamped(cosine, cos_, sin_)};
   }
 
  private:
@@ -69,7 +69,9 @@ float spread(const OctreeNode& n, VplKind kind, Vec3 intensity, const Bsdf& bsdf
   if (n.leaf()) return 0.0f;
   const Vec3 high =
       bsdf.roughUpperBound(receiver.high, [&](Vec3 axis) { return sphere.cosines(axis).high; });
-  const Vec3 low = bsdf.diffuseValue() * std::max(receiver.low, 0.0f);
+  // Nothing arrives from behind the surface, which shading normals do not tell.
+  const bool inFront = sphere.cosines(bsdf.point().ng).low > 0.0f;
+  const Vec3 low = inFront ? bsdf.diffuseValue() * std::max(receiver.low, 0.0f) : Vec3{};
   const float nearest = maxFalloff(kind, n.bounds.distanceSquared(at), n.minClamp2);
   const float farthest =
       falloff(kind, lengthSquared(max(at - n.bounds.lower, n.bounds.upper - at)), n.maxClamp2);
@@ -81,7 +83,7 @@ class Octree {
   Octree(const GatherInputs& in, double error, bool shadows)
       : accel_(in.accel),
         vpls_(in.vpls),
-        tree_(buildLightOctree(in.vpls, streamKey(in.seed, Stream::Octree))),
+        tree_(buildLightOctree(in.vpls, streamKey(in.seed, RandomStream::Octree))),
         error_(error),
         shadows_(shadows) {}
 
@@ -158,7 +160,7 @@ class Octree {
 Gather make(const GatherInputs& in, const Values& options) {
   const auto tree =
       std::make_shared<const Octree>(in, options[kErrorOption], options[kShadowsOption] != "none");
-  return gatherEach([tree](const Bsdf& bsdf, const GroupSink&) { return tree->gather(bsdf); });
+  return gatherEach([tree](const Bsdf& bsdf, const LightGroupSink&) { return tree->gather(bsdf); });
 }
 
 }  // namespace

@@ -9,14 +9,15 @@ BrightLights::BrightLights(const VplLights& vpls, const Bounds& scene, uint32_t 
     : vpls_(vpls),
       grid_(scene, std::max(maxComponent(scene.extent()), 1e-20f) / static_cast<float>(cells)),
       threshold_(threshold),
-      upTo_(1, 0.0),
-      cells_(std::make_unique<LazyCell[]>(grid_.count())) {
+      upTo_(1, 0.0) {
   for (const Vec3 i : vpls.intensity) upTo_.push_back(upTo_.back() + double{mean(i)});
 }
 
 const BrightLights::Cell& BrightLights::at(Vec3 position) const {
   const size_t index = grid_.at(position);
-  LazyCell& lazy = cells_[index];
+  auto found = cells_.find(index);
+  if (found == cells_.end()) found = cells_.emplace(index, std::make_unique<LazyCell>()).first;
+  LazyCell& lazy = *found->second;
   std::call_once(lazy.once, [&] { lazy.cell = find(grid_.bounds(index)); });
   return lazy.cell;
 }
@@ -34,7 +35,7 @@ BrightLights::Cell BrightLights::find(const Bounds& box) const {
     if (d2 > reach * reach) {
       const float sinSphere = reach / std::sqrt(d2);
       cosine =
-          cosineOfLess(-dot(vpls_.normal[i], to) / std::sqrt(d2), sineOf(sinSphere), sinSphere);
+          cosSubClamped(-dot(vpls_.normal[i], to) / std::sqrt(d2), sineOf(sinSphere), sinSphere);
     }
     const float emitted =
         intensity * withKind(vpls_.kind, [&](auto k) { return k.maxEmitted(cosine, 1.0f, 0.0f); });

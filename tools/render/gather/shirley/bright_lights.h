@@ -1,6 +1,8 @@
 // The VPLs that are bright somewhere in a cell of space (Shirley, Wang & Zimmerman 1996).
 #pragma once
 
+#include <tbb/concurrent_unordered_map.h>
+
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -44,7 +46,7 @@ class BrightLights {
   CellGrid grid_;
   float threshold_;
   std::vector<double> upTo_;  // running sums of all mean intensities; one entry more
-  std::unique_ptr<LazyCell[]> cells_;
+  mutable tbb::concurrent_unordered_map<size_t, std::unique_ptr<LazyCell>> cells_;
 };
 
 }  // namespace bnvpl::methods::gather::shirley

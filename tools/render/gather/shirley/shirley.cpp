@@ -23,7 +23,8 @@ constexpr std::array kCounters{
     Counter{"brightlights", "bright VPLs", "VPLs that are bright in the sample's cell"}};
 
 Gathered gatherPoint(const Accelerator& accel, const VplLights& vpls, const BrightLights& lights,
-                     uint32_t dimRays, const Bsdf& bsdf, uint64_t key, const GroupSink& groups) {
+                     uint32_t dimRays, const Bsdf& bsdf, uint64_t key,
+                     const LightGroupSink& groups) {
   Gathered out;
   const ShadowTest test(accel, vpls, bsdf, groups);
   const BrightLights::Cell& cell = lights.at(bsdf.point().position);
@@ -46,7 +47,7 @@ Gather make(const GatherInputs& in, const Values& options) {
       options.real32(kThresholdOption));
   const auto dimRays = static_cast<uint32_t>(options[kDimRaysOption]);
   return gatherEach([&accel = in.accel, &vpls = in.vpls, lights, dimRays](
-                        const Bsdf& bsdf, uint64_t key, const GroupSink& groups) {
+                        const Bsdf& bsdf, uint64_t key, const LightGroupSink& groups) {
     return gatherPoint(accel, vpls, *lights, dimRays, bsdf, key, groups);
   });
 }

@@ -62,7 +62,7 @@ std::optional<float> leftShare(const LightNode& left, const LightNode& right,
 }
 
 Gathered gatherPoint(const Accelerator& accel, const VplLights& vpls, const LightTree& tree,
-                     size_t cutSize, const Bsdf& bsdf, uint64_t key, const GroupSink& groups) {
+                     size_t cutSize, const Bsdf& bsdf, uint64_t key, const LightGroupSink& groups) {
   Gathered out;
   if (tree.nodes.empty()) return out;
   const ClusterReceiver receiver(bsdf);
@@ -83,7 +83,7 @@ Gathered gatherPoint(const Accelerator& accel, const VplLights& vpls, const Ligh
 Gather make(const GatherInputs& in, const Values& options) {
   const auto cut = static_cast<size_t>(options[kCutOption]);
   return gatherEach([&accel = in.accel, &vpls = in.vpls, &tree = in.tree, cut](
-                        const Bsdf& bsdf, uint64_t key, const GroupSink& groups) {
+                        const Bsdf& bsdf, uint64_t key, const LightGroupSink& groups) {
     return gatherPoint(accel, vpls, tree, cut, bsdf, key, groups);
   });
 }

@@ -11,8 +11,8 @@
 namespace bnvpl {
 
 struct TileCutOptions {
-  float error = 0.05f;     // allowed standard deviation of a pixel, as a share of its tile's light
-  uint32_t maxCut = 1000;  // maximal number of clusters
+  float error;      // allowed standard deviation of a pixel, as a share of its tile's light
+  uint32_t maxCut;  // maximal number of clusters
 };
 
 // Clusters, and the standard deviation that one sample may have, W/(m2 sr), summed over channels.

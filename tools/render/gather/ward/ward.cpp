@@ -75,7 +75,7 @@ std::vector<Potential>& sortedPotentials(const VplLights& vpls, const Bsdf& bsdf
 
 Gathered gatherPoint(const Accelerator& accel, const VplLights& vpls,
                      const std::vector<float>& rates, double tolerance, const Bsdf& bsdf,
-                     const GroupSink& groups) {
+                     const LightGroupSink& groups) {
   const std::vector<Potential>& list = sortedPotentials(vpls, bsdf);
   double untested = 0.0;
   Gathered out;
@@ -118,7 +118,7 @@ Gather make(const GatherInputs& in, const Values& options) {
       std::make_shared<const std::vector<float>>(hitRates(in, options[kVisibilityTestsOption]));
   return gatherEach(
       [&accel = in.accel, &vpls = in.vpls, rates, tolerance = options[kToleranceOption]](
-          const Bsdf& bsdf, const GroupSink& groups) {
+          const Bsdf& bsdf, const LightGroupSink& groups) {
         return gatherPoint(accel, vpls, *rates, tolerance, bsdf, groups);
       });
 }

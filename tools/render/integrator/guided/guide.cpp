@@ -4,7 +4,7 @@
 
 #include "core/cdf.h"
 #include "core/parallel.h"
-#include "tools/common/files/streams.h"
+#include "core/random_streams.h"
 #include "transport/specular_path.h"
 
 namespace bnvpl {
@@ -45,7 +45,7 @@ Guide::Guide(const VplTable& lit, const Accelerator& accel, const LightSet& ligh
   findRadiance(lit, near);
   regions_ = RegionGrid(position_, normal_, lit.radius);
   const ProgressFn::Phase phase = progress.before("guiding distributions", lit.size());
-  const uint64_t key = streamKey(seed, Stream::Guide);
+  const uint64_t key = streamKey(seed, RandomStream::Guide);
   const uint32_t each = strata_.cells();
   std::vector<Learnt> learnt(lit.size() * each);
   parallelFor(lit.size(), 16, [&](size_t i) {
@@ -167,14 +167,14 @@ void Guide::fillCdfs(const std::vector<float>& radiance) {
 Vec3 Guide::sample(uint32_t region, Point2 at, float& pdf) const {
   const auto cell = static_cast<uint32_t>(sampleCdf(cdf(region), at.x));
   const Vec3 local = grid_.direction(cell, at.x, at.y);
-  pdf = cdfShare(cdf(region), cell) * grid_.pdfInCell(local.z);
+  pdf = cdfProbability(cdf(region), cell) * grid_.pdfInCell(local.z);
   return Frame(normal_[region]).toWorld(local);
 }
 
 float Guide::pdf(uint32_t region, Vec3 wi) const {
   const Vec3 local = toLocal(Frame(normal_[region]), wi);
   if (local.z <= 0.0f) return 0.0f;
-  return cdfShare(cdf(region), grid_.cellOf(local)) * grid_.pdfInCell(local.z);
+  return cdfProbability(cdf(region), grid_.cellOf(local)) * grid_.pdfInCell(local.z);
 }
 
 }  // namespace bnvpl

@@ -2,7 +2,7 @@
 #include <array>
 #include <memory>
 
-#include "tools/common/files/streams.h"
+#include "core/random_streams.h"
 #include "tools/render/integrator/guided/guided_rays.h"
 #include "tools/render/integrator/path_tracer.h"
 #include "tools/render/integrator/tile_options.h"
@@ -73,7 +73,7 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   const auto parts = std::make_shared<Parts>();
   parts->spatialLights = std::make_unique<const SpatialLightSampler>(
       in.accel, in.lights, in.lit.position, in.lit.normal, in.lit.radius,
-      streamKey(in.seed, Stream::SpatialLightSampler), in.progress);
+      streamKey(in.seed, RandomStream::SpatialLightSampler), in.progress);
   TileParts tile;
   tile.spatialLights = parts->spatialLights.get();
   if (options.has(kPathsOption)) {

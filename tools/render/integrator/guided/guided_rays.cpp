@@ -94,8 +94,8 @@ LightWithPart GuidedRays::tracePath(const Bsdf& first, const FirstSegment& start
                                     Vec3 throughput, Vec3 diffuse, Rng& rng,
                                     std::span<Vec3> groups) const {
   const size_t lightGroups = groups.size() / 3;
-  const GroupSink all = sinkTo(groups.first(lightGroups)),
-                  part = sinkTo(groups.subspan(lightGroups, lightGroups));
+  const LightGroupSink all = sinkTo(groups.first(lightGroups)),
+                       part = sinkTo(groups.subspan(lightGroups, lightGroups));
   const std::span<Vec3> emission = groups.last(lightGroups);
   const auto sinks = [&](const LearnedLight& lights, const LightWithPart& w) {
     return LightSampling{lights, LightChoice::One, {}, all.times(w.all), part.times(w.part)};

@@ -82,16 +82,16 @@ TEST(LightTracer, ContinuesFromEveryRound) {
   const Given options{{"spp", "8"}};  // 12800 photons
   const RenderResult whole = renderWithout(world, "light", options);
   struct Stopped {};
-  Resume resume;
-  resume.pause = [] { return true; };
-  resume.save = [&](const std::string& state) {
-    resume.state = state;
+  WorkControls controls;
+  controls.pause = [] { return true; };
+  controls.save = [&](const std::string& state) {
+    controls.state = state;
     throw Stopped{};
   };
   int stops = 0;
   for (bool ended = false; !ended;) {
     try {
-      const Resume begin = resume;
+      const WorkControls begin = controls;
       const RenderResult pieces = renderWithout(world, "light", options, begin);
       EXPECT_EQ(*pieces.image.find("R"), *whole.image.find("R"));
       EXPECT_EQ(pieces.stats.indirect, whole.stats.indirect);

@@ -1,6 +1,6 @@
 #include "tools/render/integrator/light/light_tracer.h"
 
-#include "tools/common/files/streams.h"
+#include "core/random_streams.h"
 #include "tools/render/splat/film_connection.h"
 #include "transport/camera.h"
 
@@ -20,7 +20,7 @@ LightTracer::LightTracer(const Accelerator& accel, const LightSet& lights,
       lights_(lights),
       filter_(filter),
       maxBounces_(maxBounces),
-      key_(streamKey(seed, Stream::LightTracer)) {}
+      key_(streamKey(seed, RandomStream::LightTracer)) {}
 
 void LightTracer::follow(uint64_t begin, uint64_t end, Splats& out) const {
   const Film& film = accel_.scene().film;

@@ -66,7 +66,7 @@ struct NearFieldRays::Path {
 
   LearnedLight learned(unsigned rays) const { return {strata.all ? &strata : nullptr, rays}; }
 
-  GroupSink lightSink() const { return sinkTo(lightGroups); }
+  LightGroupSink lightSink() const { return sinkTo(lightGroups); }
   void addGroups() {
     for (uint32_t g = 0; g < lightGroups.size(); ++g) {
       Vec3 found = lightGroups[g];
@@ -208,7 +208,7 @@ void NearFieldRays::shade(Path& path, const Uncovered& uncovered, const Bsdf& bs
   const float bsdfRays = known ? 0.0f : 1.0f;
   const LightNumbers numbers =
       lights.strata && lights.rays > 1 ? LightNumbers::sequence(path.rng) : LightNumbers(path.rng);
-  const GroupSink groups =
+  const LightGroupSink groups =
       path.lightSink().times(path.throughput * (known ? uncovered.share : 1.0f));
   const Vec3 firstBounce =
       directLight(accel_, lights_, Reflected{bsdf}, {lights, LightChoice::One, {}, groups},
@@ -238,7 +238,7 @@ bool NearFieldRays::extend(Path& path, const Bsdf& bsdf) const {
   }
   ++path.out.continued;
   path.throughput *= sample.weight;
-  const GroupSink groups = path.lightSink().times(path.throughput);
+  const LightGroupSink groups = path.lightSink().times(path.throughput);
   const LearnedLight lights = path.learned(path.isFirst() ? kFirstLightRays : 1);
   path.segment =
       followSpecularPath(accel_, lights_, next.origin, next.direction,

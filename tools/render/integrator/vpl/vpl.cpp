@@ -3,7 +3,7 @@
 #include <array>
 #include <memory>
 
-#include "tools/common/files/streams.h"
+#include "core/random_streams.h"
 #include "tools/render/gather/point_gather.h"
 #include "tools/render/integrator/tile_options.h"
 #include "tools/render/integrator/vpl/near_field_rays.h"
@@ -20,7 +20,7 @@ constexpr auto kLightOption =
                                             "disk, attenuation without singularity, or a sphere"));
 constexpr auto kClampOption = neededBy(
     kIndirectIsShown,
-    inTopic(Topic::Expert, realOption("clamp", "2", 0, 1000, "r_max",
+    inTopic(Topic::Expert, realOption("clamp", "2", 0, 1000, "radii of the VPL",
                                       "radius of a VPL: 1/d^2 of a point is clamped within "
                                       "it; disks and spheres have this radius")));
 constexpr auto kNearFieldRaysOption =
@@ -89,7 +89,7 @@ Gather makeGather(const IntegratorInputs& in, const Values& options, const FilmR
   if (!gather.point) {
     parts.point = std::make_unique<PointGather>(in.accel, parts.vpls, parts.tree);
     gather.point = [&point = *parts.point](const Bsdf& bsdf, unsigned draws, Rng& rng,
-                                           const GroupSink& groups) {
+                                           const LightGroupSink& groups) {
       return point(bsdf, draws, rng, groups);
     };
   }
@@ -136,7 +136,7 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   if (indirect && (tile.raysEach > 0 || compensation.tile)) {
     parts->spatialLights = std::make_unique<const SpatialLightSampler>(
         in.accel, in.lights, in.lit.position, in.lit.normal, in.lit.radius,
-        streamKey(in.seed, Stream::SpatialLightSampler), in.progress);
+        streamKey(in.seed, RandomStream::SpatialLightSampler), in.progress);
   }
   tile.spatialLights = parts->spatialLights.get();
   const FilmRays filmRays(in.accel, in.lights, in.filter, tile.spatialLights, in.seed);

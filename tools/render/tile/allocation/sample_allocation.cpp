@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/parallel.h"
-#include "tools/common/files/streams.h"
+#include "core/random_streams.h"
 #include "tools/render/film/tiles.h"
 #include "tools/render/tile/allocation/parity_pattern.h"
 
@@ -94,7 +94,7 @@ SampleAllocation findAllocation(const Scene& scene, const PixelFilter& filter, u
                                 const std::function<double(const TileSamples&)>& render) {
   const Tiles tiles(scene.film);
   const size_t count = std::min(kPilotTiles, tiles.count());
-  const uint64_t key = streamKey(seed, Stream::Allocation);
+  const uint64_t key = streamKey(seed, RandomStream::Allocation);
   const auto phase = progress.before("sample allocation pilot, tiles", count);
   std::vector<PilotTile> pilot(count);
   parallelFor(count, 1, [&](size_t k) {

@@ -4,7 +4,7 @@
 #include <map>
 
 #include "core/parallel.h"
-#include "tools/common/files/streams.h"
+#include "core/random_streams.h"
 #include "tools/render/splat/add_splats.h"
 #include "tools/render/splat/film_connection.h"
 #include "transport/camera.h"
@@ -20,7 +20,7 @@ Caustics::Caustics(const Accelerator& accel, const LightSet& lights, const Pixel
       lights_(lights),
       filter_(filter),
       photons_(photons),
-      key_(streamKey(seed, Stream::Caustics)),
+      key_(streamKey(seed, RandomStream::Caustics)),
       raysOfPixel_(raysOfPixel),
       bounces_(bounces),
       width_(accel.scene().film.width),
@@ -29,8 +29,8 @@ Caustics::Caustics(const Accelerator& accel, const LightSet& lights, const Pixel
       guide_(lights) {
   for (size_t i = 0; i < groupLight_.size(); i += groups)
     light_[i / groups].groups = &groupLight_[i];
-  learnEmission(streamKey(seed, Stream::CausticEmission), progress);
-  chooseLamps(streamKey(seed, Stream::CausticPilot), progress);
+  learnEmission(streamKey(seed, RandomStream::CausticEmission), progress);
+  chooseEmitters(streamKey(seed, RandomStream::CausticPilot), progress);
   SplatProgress done;
   const auto phase = progress.before("caustic photons", photons);
   addSplats(
@@ -44,32 +44,37 @@ Caustics::Caustics(const Accelerator& accel, const LightSet& lights, const Pixel
 // The target is the light of a caustic photon on the film, and the proxy that of any photon. Until
 // the guide is there, the weights of MIS are those of photons by power.
 void Caustics::learnEmission(uint64_t key, const ProgressFn& progress) {
-  LearnedEmission learned = bnvpl::learnEmission(
-      lights_, (photons_ + kLearnShare - 1) / kLearnShare, key,
-      [&](const Emission& e, const PhotonStart& start, Rng& rng, bool withProxy) {
-        PilotContribution contribution;
-        Splats splats;
-        const Vec3 flux = start.flux * (1.0f / static_cast<float>(photons_));
-        const Vec3 lens = lensPoint(rng);
-        trace({e.light, 1.0f, start, flux, lights_.hittable(e.light), lens}, rng, splats);
-        for (const Splat& splat : splats.list) contribution.target += double{mean(splat.radiance)};
-        if (!withProxy) return contribution;
-        constexpr unsigned kProxyBounces = 4;
-        followPhoton(accel_, PhotonWalk(start, kProxyBounces, rng),
-                     [&](const Bsdf& bsdf, Vec3 arriving, bool) {
-                       if (const auto film = connectToFilm(accel_, bsdf.point(), lens, {}))
-                         contribution.proxy += double{mean(arriving * film->value) * film->perArea};
-                     });
-        return contribution;
-      },
-      progress);
+  const PilotEstimator estimate = [&](const Emission& e, const PhotonStart& start, Rng& rng,
+                                      bool withProxy) {
+    PilotContribution contribution;
+    Splats splats;
+    const Vec3 flux = start.flux * (1.0f / static_cast<float>(photons_));
+    const Vec3 lens = lensPoint(rng);
+    trace({e.light, 1.0f, start, flux, lights_.hittable(e.light), lens}, rng, splats);
+    for (const Splat& splat : splats.list) contribution.target += double{mean(splat.radiance)};
+    if (!withProxy) return contribution;
+    constexpr unsigned kProxyBounces = 4;
+    followPhoton(accel_, PhotonWalk(start, kProxyBounces, rng),
+                 [&](const Bsdf& bsdf, Vec3 arriving, bool) {
+                   if (const auto film = connectToFilm(accel_, bsdf.point(), lens, {}))
+                     contribution.proxy += double{mean(arriving * film->value) * film->perArea};
+                 });
+    return contribution;
+  };
+  // What a photon has to learn does not depend on the number of pixels.
+  uint64_t count = (photons_ + kPhotonsPerLearningPhoton - 1) / kPhotonsPerLearningPhoton;
+  LearnedEmission learned = bnvpl::learnEmission(lights_, count, key, estimate, progress);
+  for (; !learned.enough && count < kMaxLearningPhotons; key = mix64(key)) {
+    count = std::min(4 * count, kMaxLearningPhotons);
+    learned = bnvpl::learnEmission(lights_, count, key, estimate, progress);
+  }
   useful_ = learned.useful;
   guide_ = std::move(learned.guide);
 }
 
-void Caustics::chooseLamps(uint64_t key, const ProgressFn& progress) {
+void Caustics::chooseEmitters(uint64_t key, const ProgressFn& progress) {
   constexpr uint64_t kChunk = 4096;
-  const uint64_t count = (photons_ + kPilotShare - 1) / kPilotShare;
+  const uint64_t count = (photons_ + kPhotonsPerPilotPhoton - 1) / kPhotonsPerPilotPhoton;
   struct SplatMoments {
     double sum = 0.0, squares = 0.0;
   };
@@ -81,7 +86,7 @@ void Caustics::chooseLamps(uint64_t key, const ProgressFn& progress) {
     for (uint64_t i = begin; i < end; ++i) {
       splats.list.clear();
       const uint64_t lamp = follow(key, i, count, splats);
-      if (lamp == kNoLamp) continue;
+      if (lamp == kNoEmitter) continue;
       SplatMoments& found = chunks[c][lamp];
       for (const Splat& splat : splats.list) {
         const double light{mean(splat.radiance)};
@@ -118,7 +123,7 @@ void Caustics::add(const Splat& splat) {
   }
 }
 
-PhotonMis Caustics::shared(const SurfacePoint& point, Vec3 origin) const {
+PhotonMis Caustics::photonMis(const SurfacePoint& point, Vec3 origin) const {
   return sharedBy(samplesPerArea(accel_.scene(), point, origin));
 }
 
@@ -137,12 +142,12 @@ uint64_t Caustics::follow(uint64_t key, uint64_t index, uint64_t count, Splats& 
   const Emission e = guide_.draw(guide_.guides() ? (double(index) + u) / double(count) : u, rng);
   const float guided = guide_.density(e);
   const double probability = double{lights_.pickProbability(e.light)} * double{guided};
-  if (!(probability > 0.0)) return kNoLamp;
+  if (!(probability > 0.0)) return kNoEmitter;
   Photon photon{e.light,       guided, lights_.emit(e.light, e.at), {}, lights_.hittable(e.light),
                 lensPoint(rng)};
   const uint64_t lamp =
-      photon.hittable ? lampOf(lights_, e.light, -photon.start.direction) : kNoLamp;
-  if (lamp == kNoLamp ? !chosen_ : chosen_ && !std::ranges::binary_search(dense_, lamp))
+      photon.hittable ? emitterOf(lights_, e.light, -photon.start.direction) : kNoEmitter;
+  if (lamp == kNoEmitter ? !chosen_ : chosen_ && !std::ranges::binary_search(dense_, lamp))
     return lamp;  // the pilot does not need it, or its light is left to rays
   photon.flux = photon.start.flux * static_cast<float>(1.0 / (probability * double(photons_)));
   trace(photon, rng, out);

@@ -21,10 +21,10 @@ namespace bnvpl {
 // that no ray can hit are theirs alone.
 //
 // Photons start where pilot photons found ways into view (EmissionGuide). A further pilot measures
-// the noise of each lamp's photons (lampOf: a light, or a region of a sky). With the splats r_k of
-// a lamp, (sum r_k)^2 / sum r_k^2 is the number of equal splats that would be as noisy. A lamp with
-// fewer than kMinPilotPhotons of them is left to near-field rays: for example one behind a door.
-// The photons of the image are independent of the pilots', so that it stays unbiased.
+// the noise of each lamp's photons (emitterOf: a light, or a region of a sky). With the splats r_k
+// of a lamp, (sum r_k)^2 / sum r_k^2 is the number of equal splats that would be as noisy. A lamp
+// with fewer than kMinPilotPhotons of them is left to near-field rays: for example one behind a
+// door. The photons of the image are independent of the pilots', so that it stays unbiased.
 //
 // No path from the camera can end at a light that no ray can hit if a perfect mirror or glass lies
 // before it. With `bounces` > 0 photons carry all of that light to directly visible surfaces: they
@@ -34,7 +34,7 @@ class Caustics {
  public:
   // `photons`: > 0; the lights have power. `raysOfPixel`: near-field rays from each pixel, which
   // find the same light. `bounces`: rough vertices after the first. `groups`: light groups to tell
-  // apart. Borrows rays and lights.
+  // apart. Borrows accel and lights.
   Caustics(const Accelerator& accel, const LightSet& lights, const PixelFilter& filter,
            uint64_t photons, float raysOfPixel, unsigned bounces, uint64_t seed, uint32_t groups,
            const ProgressFn& progress);
@@ -42,23 +42,24 @@ class Caustics {
   const PhotonLight& at(uint32_t x, uint32_t y) const { return light_[size_t{y} * width_ + x]; }
   // Parameters of MIS with rays that leave a point that is directly visible from `origin`, the
   // origin of the camera ray.
-  PhotonMis shared(const SurfacePoint& point, Vec3 origin) const;
+  PhotonMis photonMis(const SurfacePoint& point, Vec3 origin) const;
   CausticStats stats() const { return {lamps_, lamps_ - dense_.size(), useful_}; }
 
  private:
   static constexpr double kMinPilotPhotons = 4.0;
-  static constexpr uint64_t kPilotShare = 8;   // photons of the image per photon of the pilot
-  static constexpr uint64_t kLearnShare = 16;  // the same for the pilot of the emission
+  static constexpr uint64_t kPhotonsPerPilotPhoton = 8;
+  static constexpr uint64_t kPhotonsPerLearningPhoton = 16;
+  static constexpr uint64_t kMaxLearningPhotons = 1 << 18;  // if few have reached the film
 
   void learnEmission(uint64_t key, const ProgressFn& progress);
-  void chooseLamps(uint64_t key, const ProgressFn& progress);
+  void chooseEmitters(uint64_t key, const ProgressFn& progress);
   void add(const Splat& splat);
   PhotonMis sharedBy(float samplesPerArea) const;
   Vec3 lensPoint(Rng& rng) const;
-  // Follows one photon. Returns its lamp, or kNoLamp if no ray can hit that.
-  static constexpr uint64_t kNoLamp = UINT64_MAX;
+  static constexpr uint64_t kNoEmitter = UINT64_MAX;
+  // Follows one photon. Returns its emitter, or kNoEmitter if no ray can hit that.
   uint64_t follow(uint64_t key, uint64_t index, uint64_t count, Splats& out) const;
-  // Follows a photon through specular vertices. `flux` is that of the one photon of many.
+  // A photon that starts. `flux` is that of the one photon of many.
   struct Photon {
     size_t light;
     float guided;  // density of its emission, relative to emission by power
@@ -67,6 +68,7 @@ class Caustics {
     bool hittable;  // whether rays can hit the light
     Vec3 lens;      // the point of the lens with which its vertices are connected
   };
+  // Follows a photon through specular vertices.
   void trace(const Photon& photon, Rng& rng, Splats& out) const;
   // Follows the photon from a rough vertex, by its rough lobes.
   void followBounces(const Bsdf& bsdf, Vec3 flux, const Photon& photon, Rng& rng,

@@ -12,7 +12,7 @@ namespace bnvpl {
 namespace {
 
 constexpr float kMinAlbedo = 0.01f;  // the irradiance at darker VPLs would be noise
-constexpr float kSmooth = 5.0f;      // radius of the average, in r_max
+constexpr float kSmooth = 5.0f;      // radius of the average, in radii of the VPL
 
 }  // namespace
 

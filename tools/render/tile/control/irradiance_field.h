@@ -24,7 +24,7 @@ class IrradianceField {
     return region == UINT32_MAX ? Vec3{} : indirect_[region];
   }
   // Adds the same by light group.
-  void addByGroup(Vec3 position, Vec3 normal, const GroupSink& sink) const {
+  void addByGroup(Vec3 position, Vec3 normal, const LightGroupSink& sink) const {
     const uint32_t region = regions_.at(position, normal);
     for (uint32_t g = 0; region != UINT32_MAX && g < groups_; ++g)
       sink.add(g, byGroup_[size_t{region} * groups_ + g]);

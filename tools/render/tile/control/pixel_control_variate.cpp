@@ -36,7 +36,7 @@ Vec3 PixelControlVariate::predicted(const SpecularPath& path) const {
 
 // Adds the prediction by light group, times `factor`.
 void PixelControlVariate::addByGroup(const SpecularPath& path, float factor,
-                                     const GroupSink& sink) const {
+                                     const LightGroupSink& sink) const {
   if (!sink || !path.rough) return;
   const Vec3 reflected = path.throughput * Bsdf(scene_, path.hit).roughAlbedo();
   field_.addByGroup(path.hit.position, path.hit.ng, sink.times(reflected * factor));
@@ -131,7 +131,7 @@ void PixelControlVariate::apply(const TileSamples& tile,
     if (!(variate.beta > 0.0f)) continue;
     Vec3 sum;
     const float each = 1.0f / static_cast<float>(pixels_.count(tile, pixel));
-    const GroupSink byGroup = tile.samples[i].groups.indirect();
+    const LightGroupSink byGroup = tile.samples[i].groups.indirect();
     pixels_.forEach(tile, pixel, tile.firstSample + static_cast<uint32_t>(i / tile.pixels), {},
                     [&](const SpecularPath& path, const RadianceSample&, float weight) {
                       const Vec3 prediction = predicted(path);

@@ -11,7 +11,7 @@ namespace bnvpl {
 
 class PixelControlVariate {
  public:
-  // Borrows rays and lights.
+  // Borrows accel and lights.
   PixelControlVariate(const Accelerator& accel, const LightSet& lights, const PixelFilter& filter,
                       const FilmPoints& filmPoints, const VplTable& lit,
                       const VplGroups& groups = {});
@@ -26,7 +26,7 @@ class PixelControlVariate {
 
  private:
   Vec3 predicted(const SpecularPath& path) const;
-  void addByGroup(const SpecularPath& path, float factor, const GroupSink& sink) const;
+  void addByGroup(const SpecularPath& path, float factor, const LightGroupSink& sink) const;
   std::vector<float> predictedAt(const FilmPoints& filmPoints) const;
 
   const Scene& scene_;

@@ -18,7 +18,7 @@ class PixelRays {
  public:
   // `values`: the quantity along one ray of each pixel. The more it varies around a pixel, the more
   // rays each of the pixel's samples gets; none where its deviation is below `minDeviation` times
-  // its mean. Borrows rays and lights.
+  // its mean. Borrows accel and lights.
   PixelRays(const Accelerator& accel, const LightSet& lights, const PixelFilter& filter,
             const FilmPoints& filmPoints, std::span<const float> values, double minDeviation,
             TileDimension dimension);

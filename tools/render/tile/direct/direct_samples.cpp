@@ -37,7 +37,8 @@ DirectSamples::Light& DirectSamples::Light::operator+=(const Light& other) {
 DirectSamples::Light DirectSamples::sample(uint32_t x, uint32_t y, const Rays& rays,
                                            const RandomNumbers& numbers, uint32_t index,
                                            const PixelFilter::Turn& turn, RadianceSample* layers,
-                                           const SampleGroups& met, const GroupSink& lit) const {
+                                           const SampleGroups& met,
+                                           const LightGroupSink& lit) const {
   Rng rng = Rng::stratified(numbers.path, index);
   const PixelFilter::Sample at = filter_.sample(rng.nextPoint(), turn);
   RadianceSample seen;
@@ -67,7 +68,8 @@ DirectSamples::Light DirectSamples::sample(uint32_t x, uint32_t y, const Rays& r
 
 // Light by at most one BSDF ray, which is traced with the probability rays.bsdf.
 Vec3 DirectSamples::bsdfRay(const Bsdf& bsdf, Vec3 throughput, const Rays& rays,
-                            const LearnedLight& learned, Rng& rng, const GroupSink& lit) const {
+                            const LearnedLight& learned, Rng& rng,
+                            const LightGroupSink& lit) const {
   BsdfSample next;
   if ((rays.bsdf < 1.0f && rng.next() >= rays.bsdf) ||
       !bsdf.sample(LobeGroup::Rough, TransportMode::Radiance, rng, next))
@@ -200,7 +202,7 @@ void DirectSamples::add(const TileSamples& tile, uint32_t pixel, const Rays& ray
       RadianceSample* layers =
           alone_ && out.count + k == 0 ? &tile.samples[s * tile.pixels + pixel].radiance : nullptr;
       const SampleGroups& met = tile.samples[s * tile.pixels + pixel].groups;
-      const GroupSink lit{met.sums ? &out.lit[s * met.count] : nullptr};
+      const LightGroupSink lit{met.sums ? &out.lit[s * met.count] : nullptr};
       const Light light = sample(x, y, rays, numbers, index++, turn, layers, met, lit);
       ++turn.index;
       out.sums[s] += light;

@@ -63,9 +63,9 @@ class DirectSamples {
   // the camera path meets and that the shading point scatters.
   Light sample(uint32_t x, uint32_t y, const Rays& rays, const RandomNumbers& numbers,
                uint32_t index, const PixelFilter::Turn& turn, RadianceSample* layers = nullptr,
-               const SampleGroups& met = {}, const GroupSink& lit = {}) const;
+               const SampleGroups& met = {}, const LightGroupSink& lit = {}) const;
   Vec3 bsdfRay(const Bsdf& bsdf, Vec3 throughput, const Rays& rays, const LearnedLight& learned,
-               Rng& rng, const GroupSink& lit) const;
+               Rng& rng, const LightGroupSink& lit) const;
   struct Pixel;
   double costOf(const Rays& rays) const;
   void add(const TileSamples& tile, uint32_t pixel, const Rays& rays, unsigned count, Pixel& out,

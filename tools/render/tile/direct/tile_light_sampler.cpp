@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/parallel.h"
-#include "tools/common/files/streams.h"
+#include "core/random_streams.h"
 
 namespace bnvpl {
 
@@ -23,7 +23,7 @@ TileLightSampler::TileLightSampler(const Accelerator& accel, const LightSet& lig
       strata_(lights),
       raysEach_(std::clamp<uint64_t>(raysOfTile / 2 / std::max<size_t>(1, strata_.size()), 1,
                                      kMaxRaysEach)),
-      key_(streamKey(seed, Stream::TileLightSampler)),
+      key_(streamKey(seed, RandomStream::TileLightSampler)),
       tilesX_((accel.scene().film.width + kTileSide - 1) / kTileSide),
       tilesY_((accel.scene().film.height + kTileSide - 1) / kTileSide),
       cost_(cost),

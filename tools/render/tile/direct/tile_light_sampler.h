@@ -16,7 +16,7 @@ class TileLightSampler {
  public:
   // `raysOfTile`: number of shadow rays of a tile's samples; learning takes half as many, within
   // bounds. `shadingPoint`: returns the shading point of a pixel. `cost` is set for a cost
-  // estimate. Borrows rays and lights.
+  // estimate. Borrows accel and lights.
   TileLightSampler(const Accelerator& accel, const LightSet& lights,
                    std::function<SurfacePoint(size_t pixel)> shadingPoint, uint64_t raysOfTile,
                    uint64_t seed, CostTrial* cost = nullptr);

@@ -9,7 +9,7 @@ namespace bnvpl {
 
 class VisibleEmission {
  public:
-  // Borrows rays and lights.
+  // Borrows accel and lights.
   VisibleEmission(const Accelerator& accel, const LightSet& lights, const PixelFilter& filter,
                   const FilmPoints& filmPoints)
       : pixels_(accel, lights, filter, filmPoints, filmPoints.emission, 0.0, kDimEmissionRays) {}

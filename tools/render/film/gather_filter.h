@@ -13,7 +13,8 @@ namespace bnvpl {
 
 // What a filter sees of a pixel: means over its samples.
 struct PixelSurface {
-  Vec3 light;          // radiance that the filter smooths, over the albedo, W/(m2 sr)
+  Vec3 light;          // radiance that the filter smooths, over the albedo, W/(m2 sr); NaN in
+                       // channels without albedo
   Vec3 normal;         // unit length
   float depth = 0.0f;  // along the viewing axis, scene units; 0: the pixel shows no surface
 };
@@ -26,12 +27,12 @@ struct FilmSurfaces {
 
 // Light of a pixel from the pixels around it.
 struct FilteredLight {
-  Vec3 light;           // in the unit of PixelSurface::light
+  Vec3 light;           // in the unit of PixelSurface::light; any value in channels without albedo
   uint32_t pixels = 0;  // number of pixels that it comes from; 0: no surface
 };
 
 // Thread-safe. If `light` is empty, nothing is filtered.
-struct FilmFilter {
+struct GatherFilter {
   uint32_t halo = 0;  // max distance of the pixels on which a pixel depends, along an axis
   std::function<FilteredLight(const FilmSurfaces&, uint32_t x, uint32_t y)> light = {};
   explicit operator bool() const { return light != nullptr; }
@@ -42,7 +43,7 @@ struct FilmFilter {
 // Replaces the gathered light of the pixels in `box`, and with it their indirect light. A pixel
 // keeps its own albedo, so that textures stay sharp. The first of the gather's own counters
 // receives FilteredLight::pixels; `samples(i)` is the number of samples of the i-th pixel.
-void applyFilter(const FilmFilter& filter, uint32_t width, const PixelBox& box,
+void applyFilter(const GatherFilter& filter, uint32_t width, const PixelBox& box,
                  const std::function<uint64_t(size_t)>& samples, std::span<PixelSums> film,
                  std::span<PixelCounts> counts);
 

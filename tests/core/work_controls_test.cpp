@@ -1,4 +1,4 @@
-#include "core/resume.h"
+#include "core/work_controls.h"
 
 #include <gtest/gtest.h>
 
@@ -8,16 +8,16 @@
 namespace bnvpl {
 namespace {
 
-TEST(Resume, EveryUnitRunsOnceThoughEveryRoundPauses) {
+TEST(WorkControls, EveryUnitRunsOnceThoughEveryRoundPauses) {
   std::vector<uint8_t> done(1000);
   done[3] = done[999] = 1;
   std::vector<std::atomic<int>> ran(done.size());
   int saves = 0;
-  Resume resume;
-  resume.pause = [] { return true; };
-  resume.save = [&](const std::string&) { ++saves; };
+  WorkControls controls;
+  controls.pause = [] { return true; };
+  controls.save = [&](const std::string&) { ++saves; };
   forUnitsLeft(
-      done, resume, [&](size_t i) { ++ran[i]; }, [] { return std::string(); });
+      done, controls, [&](size_t i) { ++ran[i]; }, [] { return std::string(); });
   for (size_t i = 0; i < done.size(); ++i) {
     EXPECT_EQ(done[i], 1);
     EXPECT_EQ(ran[i], i == 3 || i == 999 ? 0 : 1) << i;
@@ -25,34 +25,34 @@ TEST(Resume, EveryUnitRunsOnceThoughEveryRoundPauses) {
   EXPECT_GT(saves, 1);
 }
 
-TEST(Resume, SavingSeesWhatIsDoneAndMayEndTheWork) {
+TEST(WorkControls, SavingSeesWhatIsDoneAndMayEndTheWork) {
   std::vector<uint8_t> done(1000);
   std::atomic<size_t> ran{0};
-  Resume resume;
-  resume.pause = [&] { return ran >= 10; };
-  resume.save = [&](const std::string& state) {
+  WorkControls controls;
+  controls.pause = [&] { return ran >= 10; };
+  controls.save = [&](const std::string& state) {
     EXPECT_EQ(state, std::to_string(ran));
     throw InputError("enough");
   };
   EXPECT_THROW(forUnitsLeft(
-                   done, resume, [&](size_t) { ++ran; },
+                   done, controls, [&](size_t) { ++ran; },
                    [&] { return std::to_string(std::count(done.begin(), done.end(), 1)); }),
                InputError);
   EXPECT_GE(ran, 10u);
   EXPECT_LT(ran, 1000u);
 }
 
-TEST(Resume, NothingLeftSavesNothing) {
+TEST(WorkControls, NothingLeftSavesNothing) {
   std::vector<uint8_t> done(5);
-  Resume resume;
+  WorkControls controls;
   std::atomic<size_t> ran = 0;  // every thread calls pause()
-  resume.pause = [&] { return ++ran == 5; };
-  resume.save = [](const std::string&) { FAIL(); };
+  controls.pause = [&] { return ++ran == 5; };
+  controls.save = [](const std::string&) { FAIL(); };
   forUnitsLeft(
-      done, resume, [](size_t) {}, [] { return std::string(); });
+      done, controls, [](size_t) {}, [] { return std::string(); });
 }
 
-TEST(Resume, ArraysComeBackAndOtherLengthsAreRefused) {
+TEST(WorkControls, ArraysComeBackAndOtherLengthsAreRefused) {
   std::string bytes;
   appendArray(bytes, std::array{1, 2, 3});
   appendArray(bytes, std::array{0.5});

@@ -21,7 +21,7 @@ namespace bnvpl {
 
 // A caller's instructions to a stage. By default it does all units from the start. Of `sink`,
 // `source` and `trial`, all borrowed, at most one is set. `pause` needs `save`.
-struct Resume {
+struct WorkControls {
   std::string state;                             // argument of an earlier save(), or empty
   std::function<bool()> pause;                   // called from any thread; true: begin no unit
   std::function<void(const std::string&)> save;  // called between units; may throw to end the work
@@ -30,7 +30,7 @@ struct Resume {
   const ShardSink* sink = nullptr;      // receives the units' results; the stage returns none
   const ShardSource* source = nullptr;  // results of all units, computed elsewhere: none is done
   CostTrial* trial = nullptr;           // set by --estimate
-  double times = 1.0;                   // number of units that one unit of the trial represents
+  double trialScale = 1.0;  // units of the whole work that one unit of the trial stands for
 };
 
 // Marks each unit 0 if it is to be done here, and kElsewhere if it belongs to another shard.
@@ -41,11 +41,11 @@ inline std::vector<uint8_t> unitsToDo(size_t count, const Shard& shard) {
   return done;
 }
 
-// Calls unit(i) for each i with done[i] == 0, and sets done[i] to 1. When resume.pause() returns
-// true, the running units end, and resume.save(state()) is called unless no unit is left. The
+// Calls unit(i) for each i with done[i] == 0, and sets done[i] to 1. When controls.pause() returns
+// true, the running units end, and controls.save(state()) is called unless no unit is left. The
 // result must not depend on which units ran together, nor on their order: the k-th is order(k).
 template <typename Unit, typename State, typename Order = std::identity>
-void forUnitsLeft(std::vector<uint8_t>& done, const Resume& resume, const Unit& unit,
+void forUnitsLeft(std::vector<uint8_t>& done, const WorkControls& controls, const Unit& unit,
                   const State& state, const Order& order = {}) {
   for (;;) {
     std::atomic<bool> paused{false};
@@ -53,15 +53,15 @@ void forUnitsLeft(std::vector<uint8_t>& done, const Resume& resume, const Unit& 
       const size_t i = order(k);
       if (done[i] || paused.load(std::memory_order_relaxed)) return;
       {
-        const CostTrial::Unit timed(resume.trial, resume.times);
+        const CostTrial::Unit timed(controls.trial, controls.trialScale);
         unit(i);
       }
       done[i] = 1;
       // Checked after the unit, so that every round makes progress however frequent pauses are.
-      if (resume.pause && resume.pause()) paused.store(true, std::memory_order_relaxed);
+      if (controls.pause && controls.pause()) paused.store(true, std::memory_order_relaxed);
     });
     if (std::find(done.begin(), done.end(), 0) == done.end()) return;
-    resume.save(state());
+    controls.save(state());
   }
 }
 

@@ -6,7 +6,7 @@
 
 namespace bnvpl {
 
-enum class Stream : uint32_t {
+enum class RandomStream : uint32_t {
   PlaceCamera = 1,
   PlaceLight,
   Eliminate,
@@ -35,7 +35,7 @@ enum class Stream : uint32_t {
   Contributions      // vpl-inspect contributions
 };
 
-constexpr uint64_t streamKey(uint64_t seed, Stream stream) {
+constexpr uint64_t streamKey(uint64_t seed, RandomStream stream) {
   return streamKey(seed, static_cast<uint32_t>(stream));
 }
 

@@ -1,6 +1,7 @@
-#include "tools/render/film/film_filter.h"
+#include "tools/render/film/gather_filter.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/parallel.h"
 
@@ -8,9 +9,9 @@ namespace bnvpl {
 
 namespace {
 
-// Ratio of two sums over samples, by channels; 0 where the denominator is 0.
+// Ratio of two sums over samples, by channels; NaN where the denominator is 0.
 Vec3 ratio(const PixelSums& p, size_t above, size_t below) {
-  Vec3 out;
+  Vec3 out(NAN);
   for (int c = 0; c < 3; ++c) {
     const double by = p.sum[below + size_t(c)];
     if (by > 0.0) out[c] = static_cast<float>(p.sum[above + size_t(c)] / by);
@@ -30,14 +31,14 @@ PixelSurface surfaceOf(const PixelSums& p) {
 
 }  // namespace
 
-PixelBox FilmFilter::needed(const PixelBox& box, uint32_t width, uint32_t height) const {
+PixelBox GatherFilter::needed(const PixelBox& box, uint32_t width, uint32_t height) const {
   const int reach = static_cast<int>(halo);
   return {std::max(0, box.x0 - reach), std::max(0, box.y0 - reach),
           std::min(static_cast<int>(width), box.x1 + reach),
           std::min(static_cast<int>(height), box.y1 + reach)};
 }
 
-void applyFilter(const FilmFilter& filter, uint32_t width, const PixelBox& box,
+void applyFilter(const GatherFilter& filter, uint32_t width, const PixelBox& box,
                  const std::function<uint64_t(size_t)>& samples, std::span<PixelSums> film,
                  std::span<PixelCounts> counts) {
   FilmSurfaces seen{width, static_cast<uint32_t>(film.size() / width), {}};
@@ -53,7 +54,8 @@ void applyFilter(const FilmFilter& filter, uint32_t width, const PixelBox& box,
     PixelSums& p = film[i];
     counts[i].own[0] = filtered.pixels * samples(i);
     for (size_t c = 0; c < 3; ++c) {
-      const double after = double{filtered.light[int(c)]} * p.sum[PixelSums::kAlbedo + c];
+      const double albedo = p.sum[PixelSums::kAlbedo + c];
+      const double after = albedo > 0.0 ? double{filtered.light[int(c)]} * albedo : 0.0;
       double& before = p.sum[PixelSums::kGathered + c];
       p.sum[PixelSums::kIndirect + c] += after - before;
       before = after;
