@@ -135,6 +135,7 @@ EnvironmentImage SceneBuilder::readEnvironment(const fs::path& image) {
   size_t negative = 0;
   EnvironmentImage radiance = loadEnvironment(image, negative);
   guard.check();
+  for (const std::string& note : radiance.notes) warn(image.string() + ": " + note);
   warnOfPixels(image.string(), negative, radiance.radiance.size(), radiance.damage);
   return radiance;
 }
@@ -165,8 +166,10 @@ void SceneBuilder::resolveTextures() {
       warn(read.problems.at(next++) + "; " + (grey[i] ? kGrey : kPlainColour));
   }
   scene_.textures = std::move(read.textures);
-  for (const Texture& t : scene_.textures)
+  for (const Texture& t : scene_.textures) {
+    for (const std::string& note : t.notes) warn(t.name + ": " + note);
     warnOfPixels(t.name, t.negative, t.floats.size() / 4, t.damage);
+  }
   static_assert(TexturePool::kUnreadable == kNone);
   const auto resolve = [&](uint32_t& map) {
     if (map != kNone) map = read.indexOf.at(map);
