@@ -104,6 +104,10 @@ void TomlSection::fail(const toml::node& node, const std::string& problem) const
   throw InputError(lineOf(file_, node.source()) + name_ + ": " + problem);
 }
 
+std::string TomlSection::where(const char* key) const {
+  return lineOf(file_, node(key).source()) + name_ + ": ";
+}
+
 const toml::node& TomlSection::node(const char* key) const {
   const toml::node* n = table_.get(key);
   if (!n) fail(std::string("needs '") + key + "'; add it");

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "scene/material_inputs.h"
+#include "scene/read/toml/toml_ranges.h"
 
 namespace bnvpl {
 
@@ -155,6 +156,7 @@ void TomlSurfaces::readMaterial(const toml::table& table) {
   };
   std::visit([&](auto& parameters) { forEachField(parameters, Fields{*this, s}); }, m.model);
   readCommon(s, m);
+  warnOfClamped(s, m, builder_);
   const std::string name = m.name;
   materials_[name] = builder_.addReplacement(std::move(m));
 }
