@@ -31,8 +31,9 @@ struct GltfTextureRef {
 // The textures of one material. All must use the same set of texture coordinates as the first one.
 class GltfMaterialTextures {
  public:
-  GltfMaterialTextures(const GltfModel& model, SceneBuilder& builder, std::string materialName)
-      : model_(model), builder_(builder), material_(std::move(materialName)) {}
+  // `material` is its name in messages.
+  GltfMaterialTextures(const GltfModel& model, SceneBuilder& builder, std::string material)
+      : model_(model), builder_(builder), material_(std::move(material)) {}
 
   // Each returns the number of an expression. It is kNone without a texture, and, with a warning,
   // for a texture that cannot be used.
@@ -44,7 +45,7 @@ class GltfMaterialTextures {
 
  private:
   uint32_t add(const GltfTextureRef& ref, bool srgb, Channel channel);
-  void warn(const std::string& text) const { model_.warn("material '" + material_ + "': " + text); }
+  void warn(const std::string& text) const { model_.warn("material " + material_ + ": " + text); }
 
   const GltfModel& model_;
   SceneBuilder& builder_;
