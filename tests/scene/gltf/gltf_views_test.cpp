@@ -153,5 +153,29 @@ TEST_F(GltfViews, WhatCannotBeShownAsStatedIsToldOf) {
   EXPECT_EQ(wide.lights.at(0).falloffRad, 0.0f);
 }
 
+TEST_F(GltfViews, ACameraThatIsNoneOrSeveral) {
+  const auto message = [](const std::string& choice, Scene scene) {
+    try {
+      chooseCamera(choice, scene);
+    } catch (const UsageError& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  Gltf g = triangleGltf();
+  g.add("cameras", "{\"type\":\"perspective\",\"perspective\":{\"yfov\":0.8,\"znear\":0.1}}");
+  for (const char* name : {"Door", "Window", "Door"})
+    g.show("{\"camera\":0,\"name\":\"" + std::string(name) + "\"}");
+  const Scene s = load(g);
+  EXPECT_NE(message("Door", s).find("several cameras of this name; choose by number: 0, 2"),
+            std::string::npos);
+  EXPECT_NE(message("Wall", s).find("no such camera; its cameras have the numbers 0 'Door', 1"),
+            std::string::npos);
+  EXPECT_EQ(message("Window", s), "");
+  EXPECT_EQ(message("2", s), "");
+  EXPECT_NE(message("1", load(triangleGltf())).find("its camera has the number 0"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace bnvpl
