@@ -27,14 +27,20 @@ bool hasTexture(const Material& m) {
 
 }  // namespace
 
-uint32_t SceneBuilder::addTexture(const TextureUse& use, const std::string& otherwise) {
-  if (use.bytes) return textures_.add(use);
-  addFile(use.file);
-  if (!isRegularFile(use.file)) {
-    warn(use.file.string() + ": " + whyUnreadable(use.file, "texture") + "; " + otherwise);
-    return kNone;
+uint32_t SceneBuilder::addTexture(const TextureUse& use, const TextureTale& tale) {
+  if (!use.bytes) {
+    addFile(use.file);
+    if (!isRegularFile(use.file)) {
+      if (missing_.insert(use.file).second) {
+        warn(tale.where + use.file.string() + ": " + whyUnreadable(use.file, "texture") + "; " +
+             tale.otherwise);
+      }
+      return kNone;
+    }
   }
-  return textures_.add(use);
+  const uint32_t number = textures_.add(use);
+  if (number >= tales_.size()) tales_.resize(number + 1, tale);
+  return number;
 }
 
 uint32_t SceneBuilder::addReplacement(Material material) {
@@ -46,8 +52,8 @@ uint32_t SceneBuilder::addReplacement(Material material) {
 }
 
 uint32_t SceneBuilder::addGreyableImage(const TextureUse& use, TextureExpression image,
-                                        bool prefersAlpha) {
-  image.image = addTexture(use, kGrey);
+                                        bool prefersAlpha, const std::string& where) {
+  image.image = addTexture(use, {kGrey, where});
   if (image.image == kNone) return addExpression(constantExpression(Vec3{0.5f}));
   const uint32_t expression = addExpression(image);
   greyable_.push_back({expression, prefersAlpha});
@@ -163,7 +169,8 @@ void SceneBuilder::resolveTextures() {
   size_t next = 0;
   for (size_t i = 0; i < read.indexOf.size(); ++i) {
     if (read.indexOf[i] == TexturePool::kUnreadable)
-      warn(read.problems.at(next++) + "; " + (grey[i] ? kGrey : kPlainColour));
+      warn(tales_[i].where + read.problems.at(next++) + "; " +
+           (grey[i] ? kGrey : tales_[i].otherwise));
   }
   scene_.textures = std::move(read.textures);
   for (const Texture& t : scene_.textures) {

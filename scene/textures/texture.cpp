@@ -59,7 +59,7 @@ std::optional<Bilinear> bilinear(const Texture& t, float u, float v) {
 }
 
 Texture decodeColours(const fs::path& file, const std::string& bytes, bool srgb) {
-  Pixels pixels = decodePixels(file, bytes);
+  Pixels pixels = decodePixels(file, bytes, "EXR, HDR, PFM, ");
   Texture t;
   t.width = pixels.width;
   t.height = pixels.height;

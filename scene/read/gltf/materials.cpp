@@ -94,12 +94,11 @@ class MaterialReader {
   }
 
   void addRelief(Material& m) {
-    m.relief.normalMap = textures_.data(GltfTextureRef(from_.normalTexture), Channel::Rgb);
+    m.relief.normalMap = textures_.normals(GltfTextureRef(from_.normalTexture));
     m.relief.strength = real(from_.normalTexture.scale);
     const tinygltf::Value& coat = extensionOf(from_, "KHR_materials_clearcoat");
     if (!coat.Has("clearcoatNormalTexture")) return;
-    m.coatRelief.normalMap =
-        textures_.data(GltfTextureRef(coat, "clearcoatNormalTexture"), Channel::Rgb);
+    m.coatRelief.normalMap = textures_.normals(GltfTextureRef(coat, "clearcoatNormalTexture"));
     m.coatRelief.strength = real(gltfNumber(coat.Get("clearcoatNormalTexture"), "scale", 1.0));
   }
 

@@ -56,7 +56,11 @@ toml::table parseToml(const fs::path& file) {
 const toml::table& tableOf(const fs::path& file, const toml::table& root, const char* key) {
   const toml::node* node = root.get(key);
   const toml::table* table = node ? node->as_table() : nullptr;
-  if (!table) throw InputError(file, std::string("needs a [") + key + "] section; add it");
+  if (!node) throw InputError(file, std::string("needs a [") + key + "] section; add it");
+  if (!table) {
+    throw InputError(lineOf(file, node->source()) + "'" + key +
+                     "' must be one table; write it as [" + key + "]");
+  }
   return *table;
 }
 
@@ -145,6 +149,7 @@ std::string TomlSection::text(const char* key) const {
 
 std::string TomlSection::fileName(const char* key) const {
   std::string name = text(key);
+  if (name.empty()) fail(node(key), std::string("'") + key + "' is empty; name a file");
   if (std::any_of(name.begin(), name.end(), [](unsigned char c) { return c < ' '; })) {
     fail(node(key), std::string("'") + key + "' holds a control character" + kBackslashCure);
   }

@@ -93,7 +93,7 @@ void TomlSurfaces::readTexture(const TomlSection& s) {
       TextureUse use;
       use.file = names_.resolve(s, "image");
       use.srgb = choice(s, "encoding", kEncodingNames, 0) == 0;
-      e.image = builder_.addTexture(use);
+      e.image = builder_.addTexture(use, {SceneBuilder::kPlainColour, s.where("image")});
       e.channel = static_cast<Channel>(choice(s, "channel", kChannelNames, 0));
       if (s.has("factor")) e.value = s.vector("factor", kMaxFactor);
       e.invert = s.flag("invert", false);

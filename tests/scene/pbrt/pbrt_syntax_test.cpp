@@ -229,6 +229,10 @@ TEST_F(PbrtSyntax, AMissingFileIsNamedWithItsPlace) {
               {"gone.pbrt: no such file; check its name"});
   expectError("WorldBegin\nShape \"plymesh\" \"string filename\" \"gone.ply\"", "2:1",
               {"gone.ply: no such file; check its name"});
+  const Scene s = loadWorld(
+      "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"gone.png\"\n"
+      "Material \"diffuse\" \"texture reflectance\" \"t\"\n");
+  EXPECT_EQ(countContaining(s.warnings, "scene.pbrt:2:1: "), 1u) << joined(s.warnings);
 }
 
 }  // namespace
