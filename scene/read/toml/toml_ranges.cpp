@@ -36,7 +36,7 @@ void warnIfOutside(const TomlSection& s, const char* key, float value, Range ran
                shortestText(std::clamp(value, range.least, range.most)) + " is used");
 }
 
-// Of a colour, the channel that lies farthest outside is named.
+// The channel of a colour that lies farthest outside; it is the one that the warning names.
 float farthest(Vec3 c, Range range) {
   const float least = std::min({c.x, c.y, c.z}), most = maxComponent(c);
   return most > range.most ? most : least;
