@@ -226,8 +226,9 @@ void SceneBuilder::warnOfMissingUvs() {
       if (warned[materialNumber(t)] || !hasTexture(m)) continue;
       if (std::find(t.uv.begin(), t.uv.end(), kNone) == t.uv.end()) continue;
       warned[materialNumber(t)] = true;
-      warn(part.file.string() + ": material '" + m.name +
-           "' has a texture but faces without texture coordinates; "
+      warn(part.file.string() + ": " +
+           (m.name.empty() ? "its material" : "material '" + m.name + "'") +
+           " has a texture but faces without texture coordinates; "
            "the plain material colour is used there");
     }
   }

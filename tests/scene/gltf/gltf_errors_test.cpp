@@ -153,6 +153,19 @@ TEST_F(GltfErrors, WhatIsIgnoredIsNamed) {
   EXPECT_EQ(countContaining(s.warnings, "''"), 0u);
 }
 
+TEST_F(GltfErrors, AMaterialWithoutANameAndATextureWithoutCoordinates) {
+  write("t.tga", tga(1, 1, {{9, 9, 9, 255}}));
+  Gltf g = triangleGltf(",\"material\":0");
+  g.add("images", "{\"uri\":\"t.tga\"}");
+  g.add("textures", "{\"source\":0}");
+  g.add("materials", "{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}}}");
+  const Scene s = load(g);
+  EXPECT_EQ(
+      countContaining(s.warnings, "room.gltf#/meshes/0/primitives/0: its material has a texture"),
+      1u)
+      << joined(s.warnings);
+}
+
 TEST_F(GltfErrors, InstancesWithoutPlacesAreOne) {
   Gltf g = cornerGltf();
   g.addMesh("{\"attributes\":{\"POSITION\":0}}");
