@@ -14,6 +14,13 @@ void use(const View& view, Scene& scene) {
   scene.film = view.film;
 }
 
+std::vector<size_t> numbersOf(const Scene& scene, const std::string& name) {
+  std::vector<size_t> out;
+  for (size_t i = 0; !name.empty() && i < scene.views.size(); ++i)
+    if (scene.views[i].name == name) out.push_back(i);
+  return out;
+}
+
 }  // namespace
 
 bool isMirrored(const Camera& camera) {
@@ -21,16 +28,23 @@ bool isMirrored(const Camera& camera) {
 }
 
 void chooseCamera(const std::string& nameOrIndex, Scene& scene) {
-  const auto named = std::find_if(scene.views.begin(), scene.views.end(),
-                                  [&](const View& v) { return v.name == nameOrIndex; });
-  if (!nameOrIndex.empty() && named != scene.views.end()) return use(*named, scene);
+  const std::string asked = "--camera '" + nameOrIndex + "': " + scene.name();
+  const std::vector<size_t> named = numbersOf(scene, nameOrIndex);
+  if (named.size() > 1) {
+    std::string list;
+    for (const size_t i : named) list += (list.empty() ? "" : ", ") + std::to_string(i);
+    throw UsageError(asked + " has several cameras of this name; choose by number: " + list);
+  }
+  if (named.size() == 1) return use(scene.views[named[0]], scene);
   size_t index = 0;
   const char* end = nameOrIndex.data() + nameOrIndex.size();
   const auto [stop, error] = std::from_chars(nameOrIndex.data(), end, index);
   if (error == std::errc() && stop == end && index < scene.views.size())
     return use(scene.views[index], scene);
-  throw UsageError("--camera '" + nameOrIndex + "': " + scene.name() +
-                   " has no such camera; it has " + cameraList(scene));
+  throw UsageError(
+      asked + " has no such camera; its " +
+      (scene.views.size() == 1 ? "camera has the number " : "cameras have the numbers ") +
+      cameraList(scene));
 }
 
 void useViewFile(const fs::path& file, Scene& scene) {

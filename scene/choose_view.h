@@ -6,7 +6,7 @@
 namespace bnvpl {
 
 // Selects a camera of the scene by name, or by number from 0 if no camera has that name. Throws
-// UsageError, which lists the cameras.
+// UsageError, which lists the cameras, also where several have the name.
 void chooseCamera(const std::string& nameOrIndex, Scene& scene);
 
 // Whether the camera mirrors the image left to right. Cameras of pbrt do: its space is left-handed.

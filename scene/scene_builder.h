@@ -47,8 +47,11 @@ std::string onOneLine(std::string name);
 
 class SceneBuilder {
  public:
-  // End of the warning about a texture that cannot be read.
+  // Ends of warnings about textures that cannot be read: colours, other numbers, reliefs, masks.
   static constexpr const char* kPlainColour = "the plain material colour is used";
+  static constexpr const char* kPlainNumber = "the plain value is used";
+  static constexpr const char* kNoRelief = "the surface has no relief";
+  static constexpr const char* kNoHoles = "the surface has no holes";
   // `sceneFile` names the scene in messages and is the first of Scene::files. Each warning goes to
   // `onWarning` at once, even if an error follows and no Scene results.
   explicit SceneBuilder(fs::path sceneFile, OnWarning onWarning = {});
@@ -70,12 +73,21 @@ class SceneBuilder {
 
   // Starts to decode a texture in the background. Only the time of loading depends on it.
   void expectTexture(const TextureUse& use) { textures_.expect(use); }
+  // What becomes of a texture that cannot be read, and where it is named: the beginning of the
+  // warning, such as "room.mtl:7: ".
+  struct TextureTale {
+    std::string otherwise = kPlainColour;
+    std::string where = {};
+  };
   // Returns the number for a Material's map; equal uses share one. Returns kNone, with a warning,
-  // if the file does not exist. finish() removes a damaged texture from its materials.
-  uint32_t addTexture(const TextureUse& use, const std::string& otherwise = kPlainColour);
+  // if the file does not exist. finish() removes a damaged texture from its materials. Of several
+  // places that name a file, the first is told.
+  uint32_t addTexture(const TextureUse& use, const TextureTale& tale);
+  uint32_t addTexture(const TextureUse& use) { return addTexture(use, TextureTale()); }
   // Adds an image expression that is grey, 0.5, if the image is missing or damaged. `prefersAlpha`:
   // it takes the alpha of an image that has one, whatever its channel.
-  uint32_t addGreyableImage(const TextureUse& use, TextureExpression image, bool prefersAlpha);
+  uint32_t addGreyableImage(const TextureUse& use, TextureExpression image, bool prefersAlpha,
+                            const std::string& where = {});
   // Returns the number for a parameter of a material. Operands are numbers of expressions added
   // before, the image is a number from addTexture(). A damaged image counts as white.
   uint32_t addExpression(const TextureExpression& expression);
@@ -260,6 +272,8 @@ class SceneBuilder {
   uint32_t open_ = kNone;                     // prototype that receives meshes; kNone: the world
   uint32_t shared_ = kNone;                   // the same, during finish()
   std::vector<Greyable> greyable_;
+  std::vector<TextureTale> tales_;            // what the first use of each texture said
+  std::set<fs::path> missing_;                // textures that do not exist
   std::vector<uint32_t> lookups_;             // lookups per expression, operands included
   std::vector<FilePoint> viewPositions_;      // positions of scene_.views
   std::vector<FilePoint> lightPositions_;     // positions of scene_.lights

@@ -27,14 +27,20 @@ bool hasTexture(const Material& m) {
 
 }  // namespace
 
-uint32_t SceneBuilder::addTexture(const TextureUse& use, const std::string& otherwise) {
-  if (use.bytes) return textures_.add(use);
-  addFile(use.file);
-  if (!isRegularFile(use.file)) {
-    warn(use.file.string() + ": " + whyUnreadable(use.file, "texture") + "; " + otherwise);
-    return kNone;
+uint32_t SceneBuilder::addTexture(const TextureUse& use, const TextureTale& tale) {
+  if (!use.bytes) {
+    addFile(use.file);
+    if (!isRegularFile(use.file)) {
+      if (missing_.insert(use.file).second) {
+        warn(tale.where + use.file.string() + ": " + whyUnreadable(use.file, "texture") + "; " +
+             tale.otherwise);
+      }
+      return kNone;
+    }
   }
-  return textures_.add(use);
+  const uint32_t number = textures_.add(use);
+  if (number >= tales_.size()) tales_.resize(number + 1, tale);
+  return number;
 }
 
 uint32_t SceneBuilder::addReplacement(Material material) {
@@ -46,8 +52,8 @@ uint32_t SceneBuilder::addReplacement(Material material) {
 }
 
 uint32_t SceneBuilder::addGreyableImage(const TextureUse& use, TextureExpression image,
-                                        bool prefersAlpha) {
-  image.image = addTexture(use, kGrey);
+                                        bool prefersAlpha, const std::string& where) {
+  image.image = addTexture(use, {kGrey, where});
   if (image.image == kNone) return addExpression(constantExpression(Vec3{0.5f}));
   const uint32_t expression = addExpression(image);
   greyable_.push_back({expression, prefersAlpha});
@@ -135,6 +141,7 @@ EnvironmentImage SceneBuilder::readEnvironment(const fs::path& image) {
   size_t negative = 0;
   EnvironmentImage radiance = loadEnvironment(image, negative);
   guard.check();
+  for (const std::string& note : radiance.notes) warn(image.string() + ": " + note);
   warnOfPixels(image.string(), negative, radiance.radiance.size(), radiance.damage);
   return radiance;
 }
@@ -162,11 +169,14 @@ void SceneBuilder::resolveTextures() {
   size_t next = 0;
   for (size_t i = 0; i < read.indexOf.size(); ++i) {
     if (read.indexOf[i] == TexturePool::kUnreadable)
-      warn(read.problems.at(next++) + "; " + (grey[i] ? kGrey : kPlainColour));
+      warn(tales_[i].where + read.problems.at(next++) + "; " +
+           (grey[i] ? kGrey : tales_[i].otherwise));
   }
   scene_.textures = std::move(read.textures);
-  for (const Texture& t : scene_.textures)
+  for (const Texture& t : scene_.textures) {
+    for (const std::string& note : t.notes) warn(t.name + ": " + note);
     warnOfPixels(t.name, t.negative, t.floats.size() / 4, t.damage);
+  }
   static_assert(TexturePool::kUnreadable == kNone);
   const auto resolve = [&](uint32_t& map) {
     if (map != kNone) map = read.indexOf.at(map);
@@ -216,8 +226,9 @@ void SceneBuilder::warnOfMissingUvs() {
       if (warned[materialNumber(t)] || !hasTexture(m)) continue;
       if (std::find(t.uv.begin(), t.uv.end(), kNone) == t.uv.end()) continue;
       warned[materialNumber(t)] = true;
-      warn(part.file.string() + ": material '" + m.name +
-           "' has a texture but faces without texture coordinates; "
+      warn(part.file.string() + ": " +
+           (m.name.empty() ? "its material" : "material '" + m.name + "'") +
+           " has a texture but faces without texture coordinates; "
            "the plain material colour is used there");
     }
   }

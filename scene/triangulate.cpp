@@ -17,6 +17,28 @@ double area2(const Point& a, const Point& b, const Point& c) {
 }
 double distance(const Point& a, const Point& b) { return std::hypot(b[0] - a[0], b[1] - a[1]); }
 
+constexpr double kLongest = 8.0;  // more than the distance of any two points of an Outline
+
+// The bounding box of some points, and a margin around it.
+struct Box {
+  Point least, most;
+
+  Box(std::initializer_list<Point> points, double margin)
+      : least{INFINITY, INFINITY}, most{-INFINITY, -INFINITY} {
+    for (const Point& p : points) {
+      for (size_t i = 0; i < 2; ++i) {
+        least[i] = std::min(least[i], p[i] - margin);
+        most[i] = std::max(most[i], p[i] + margin);
+      }
+    }
+  }
+  // Whether the box of the segment from p to q meets this one.
+  bool meets(const Point& p, const Point& q) const {
+    return std::max(p[0], q[0]) >= least[0] && std::min(p[0], q[0]) <= most[0] &&
+           std::max(p[1], q[1]) >= least[1] && std::min(p[1], q[1]) <= most[1];
+  }
+};
+
 // A polygon projected to a plane, anti-clockwise, scaled so that its coordinates are about 1.
 struct Outline {
   std::vector<Point> points;
@@ -26,6 +48,8 @@ struct Outline {
   // Returns 1 if c lies to the left of the line from a to b, -1 if to the right, 0 if on it within
   // the tolerance, which treats the three points alike.
   int side(const Point& a, const Point& b, const Point& c) const {
+    if (const double area = area2(a, b, c); std::fabs(area) > kLongest * tolerance)
+      return area > 0.0 ? 1 : -1;
     const double longest = std::max({distance(a, b), distance(b, c), distance(c, a)});
     const double area = area2(a, b, c), least = tolerance * longest;
     return area > least ? 1 : area < -least ? -1 : 0;
@@ -105,9 +129,10 @@ bool edgesCross(const Outline& o) {
   const size_t n = o.points.size();
   for (size_t a = 0; a < n; ++a) {
     const size_t b = (a + 1) % n;
+    const Box box({o.points[a], o.points[b]}, 0.0);
     for (size_t c = a + 2; c < n; ++c) {
-      const size_t d = (c + 1) % n;
-      if (d == a) continue;
+      const size_t d = c + 1 == n ? 0 : c + 1;
+      if (d == a || !box.meets(o.points[c], o.points[d])) continue;
       if (o.side(a, b, c) * o.side(a, b, d) < 0 && o.side(c, d, a) * o.side(c, d, b) < 0)
         return true;
     }
@@ -172,12 +197,27 @@ class EarClipper {
     if (turn == 0) return isSpike(a, b, c) ? Kind::Spike : Kind::Flat;
     if (turn < 0) return Kind::Reflex;
     Kind kind = Kind::Ear;
+    const Box near = reachOf(o_.points[a], o_.points[b], o_.points[c]);
     for (uint32_t p = c; p != a; p = next_[p]) {
+      if (!near.meets(o_.points[p], o_.points[next_[p]])) continue;
       if (enters(p, next_[p], a, b, c)) return Kind::Blocked;
       if (p != c && o_.side(c, a, p) == 0 && o_.side(a, b, p) > 0 && o_.side(b, c, p) > 0)
         kind = Kind::Touched;
     }
     return kind;
+  }
+
+  // A box around all points that side() may put inside a triangle. For side() a point may lie
+  // outside an edge by the tolerance times the longest distance over the edge's length. Where
+  // two edges meet at an angle, both shifted by that, their corner moves by up to twice as much
+  // over the sine of the angle.
+  Box reachOf(const Point& a, const Point& b, const Point& c) const {
+    const double ab = distance(a, b), bc = distance(b, c), ca = distance(c, a);
+    const double longest = std::max({ab, bc, ca}), shortest = std::min({ab, bc, ca});
+    const double shift = o_.tolerance * kLongest / shortest;
+    const double sine = area2(a, b, c) / (longest * longest);  // no angle has a smaller one
+    constexpr double kForRounding = 2.0;
+    return Box({a, b, c}, kForRounding * 2.0 * shift / sine);
   }
 
   // Whether b lies outside the segment between a and c, all three being collinear.

@@ -166,9 +166,14 @@ Image readChecked(const fs::path& file) {
   refuseAbsurd(file, header);
   if (!parts.partComplete(0)) throw InputError(file, "scanlines are missing; make it again");
   Image image;
+  image.parts = parts.parts();
   image.width = header.displayWindow().max.x - header.displayWindow().min.x + 1;
   image.height = header.displayWindow().max.y - header.displayWindow().min.y + 1;
   for (auto it = header.channels().begin(); it != header.channels().end(); ++it) {
+    if (it.channel().xSampling != 1 || it.channel().ySampling != 1) {
+      throw InputError(file, std::string("channel '") + it.name() +
+                                 "' is subsampled; save the image with channels R, G and B");
+    }
     image.add(it.name());
   }
   for (auto it = header.begin(); it != header.end(); ++it) {

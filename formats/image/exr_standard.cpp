@@ -56,6 +56,11 @@ void readStandard(const Imf::Header& header, Image& image) {
                      to(data.max.x, display.min.x, image.width),
                      to(data.max.y, display.min.y, image.height)};
   if (box != all && box.x0 < box.x1 && box.y0 < box.y1) image.dataWindow = box;
+  if (Imf::hasChromaticities(header)) {
+    const Imf::Chromaticities& c = Imf::chromaticities(header);
+    image.chromaticities = {c.red.x,  c.red.y,  c.green.x, c.green.y,
+                            c.blue.x, c.blue.y, c.white.x, c.white.y};
+  }
   const auto* worldToCamera = header.findTypedAttribute<Imf::M44fAttribute>("worldToCamera");
   const auto* worldToNdc = header.findTypedAttribute<Imf::M44fAttribute>("worldToNDC");
   if (!worldToCamera || !worldToNdc) return;

@@ -44,6 +44,10 @@ struct Image {
   std::map<std::string, std::string> attributes;
   std::optional<PixelBox> dataWindow;  // the pixels that have values; the others are 0. None: all
   std::optional<ImageCamera> camera;
+  // The CIE x and y of red, green, blue and white, as a file states them. Images are written with
+  // those of Rec. 709.
+  std::optional<std::array<float, 8>> chromaticities;
+  int parts = 1;  // parts that the file has; the first is the image
 
   size_t pixelCount() const { return static_cast<size_t>(width) * static_cast<size_t>(height); }
 

@@ -13,13 +13,13 @@ constexpr size_t kMaxPixels = size_t{1} << 28;
 constexpr size_t kMaxBytes = size_t{1} << 30;  // stb_image counts bytes in an int
 
 template <typename Read>
-Pixels decode(const fs::path& file, const std::string& bytes, const Read& read) {
+Pixels decode(const fs::path& file, const std::string& bytes, const std::string& cure,
+              const Read& read) {
   try {
     if (bytes.size() > kMaxBytes) throw PixelError("larger than 1 GiB");
     return read();
   } catch (const PixelError& e) {
-    throw InputError(file, std::string("cannot read the image: ") + e.what() +
-                               "; supply a PNG, JPEG, TGA or BMP file");
+    throw InputError(file, std::string("cannot read the image: ") + e.what() + "; " + cure);
   }
 }
 
@@ -32,15 +32,16 @@ void requirePlausible(int64_t width, int64_t height, size_t bytes) {
     throw PixelError("it claims more pixels than a file of its size can hold");
 }
 
-Pixels decodePixels(const fs::path& file, const std::string& bytes) {
-  return decode(file, bytes, [&] {
+Pixels decodePixels(const fs::path& file, const std::string& bytes, const char* others) {
+  const std::string cure = std::string("supply a PNG, JPEG, ") + others + "TGA or BMP file";
+  return decode(file, bytes, cure, [&] {
     if (isPng(bytes)) return readPng(bytes, true);
     return isJpeg(bytes) ? readJpeg(bytes) : readTgaOrBmp(bytes);
   });
 }
 
 Pixels decodePng(const fs::path& file, const std::string& bytes) {
-  return decode(file, bytes, [&] {
+  return decode(file, bytes, "supply a PNG file", [&] {
     if (!isPng(bytes)) throw PixelError("it is no PNG");
     return readPng(bytes, false);
   });

@@ -17,8 +17,9 @@ struct Pixels {
 };
 
 // Decodes `bytes`, the content of `file`, whose name is for messages, to R, G, B and alpha. Throws
-// InputError; never allocates more than a valid file of this size needs.
-Pixels decodePixels(const fs::path& file, const std::string& bytes);
+// InputError, whose cure names also the formats `others`, such as "EXR, ", that the caller reads;
+// never allocates more than a valid file of this size needs.
+Pixels decodePixels(const fs::path& file, const std::string& bytes, const char* others = "");
 
 // Decodes a PNG, which keeps its own number of channels. Throws InputError.
 Pixels decodePng(const fs::path& file, const std::string& bytes);

@@ -51,13 +51,25 @@ Vec3 radianceOf(Rgbe p) {
   return scale * Vec3{float(p[0]), float(p[1]), float(p[2])};
 }
 
+// Parses a PRIMARIES line: x and y of red, green, blue and white. Some programs write zeros.
+void readPrimaries(std::string_view line, EnvironmentImage& image) {
+  std::istringstream numbers{std::string(line.substr(line.find('=') + 1))};
+  Primaries p;
+  for (auto* xy : {&p.red, &p.green, &p.blue, &p.white}) numbers >> (*xy)[0] >> (*xy)[1];
+  if (numbers && (isRec709(p) || rec709From(p)))
+    image.primaries = p;
+  else
+    image.notes.push_back("its header's PRIMARIES are none; those of Rec. 709 are used");
+}
+
 // Parses the header. Returns the factor that its EXPOSURE and COLORCORR lines have multiplied the
 // pixels by; each line adds to those before (Radiance's documentation of its file formats).
-Vec3 readHeader(Reader& in) {
+Vec3 readHeader(Reader& in, EnvironmentImage& image) {
   bool rgbe = false;
   Vec3 factor{1.0f};
   for (std::string_view line = in.line(); !line.empty(); line = in.line()) {
     rgbe = rgbe || line == "FORMAT=32-bit_rle_rgbe";
+    if (line.starts_with("PRIMARIES=")) readPrimaries(line, image);
     const bool exposure = line.starts_with("EXPOSURE="),
                perChannel = line.starts_with("COLORCORR=");
     if (!exposure && !perChannel) continue;
@@ -107,8 +119,9 @@ bool isRadianceHdr(std::string_view bytes) {
 
 EnvironmentImage readRadianceHdr(const fs::path& file, std::string_view bytes) {
   Reader in(file, bytes);
-  const Vec3 factor = readHeader(in), scale{1.0f / factor.x, 1.0f / factor.y, 1.0f / factor.z};
   EnvironmentImage image;
+  const Vec3 factor = readHeader(in, image),
+             scale{1.0f / factor.x, 1.0f / factor.y, 1.0f / factor.z};
   std::string_view size = in.line();
   image.height = side(in, size, "-Y ");
   image.width = side(in, size, " +X ");

@@ -6,8 +6,8 @@
 
 #include "core/files.h"
 #include "core/prefetch.h"
-#include "formats/image/exr_io.h"
 #include "formats/image/pixels_io.h"
+#include "scene/textures/exr_colours.h"
 #include "scene/textures/pfm.h"
 #include "scene/textures/radiance_hdr.h"
 
@@ -59,7 +59,7 @@ std::optional<Bilinear> bilinear(const Texture& t, float u, float v) {
 }
 
 Texture decodeColours(const fs::path& file, const std::string& bytes, bool srgb) {
-  Pixels pixels = decodePixels(file, bytes);
+  Pixels pixels = decodePixels(file, bytes, "EXR, HDR, PFM, ");
   Texture t;
   t.width = pixels.width;
   t.height = pixels.height;
@@ -126,18 +126,13 @@ Vec3 EnvironmentImage::lookup(float u, float v) const {
 
 namespace {
 
-EnvironmentImage fromExr(const fs::path& file, std::vector<float>* alpha = nullptr) {
-  const Image image = readExr(file);
-  const std::vector<float>*r = image.find("R"), *g = image.find("G"), *b = image.find("B");
-  if (const std::vector<float>* grey = image.find("Y"); grey && !r && !g && !b) r = g = b = grey;
-  if (!r || !g || !b) throw InputError(file, "has no R, G and B channels; supply a colour image");
-  if (const std::vector<float>* a = image.find("A"); a && alpha) *alpha = *a;
-  EnvironmentImage e;
-  e.width = static_cast<uint32_t>(image.width);
-  e.height = static_cast<uint32_t>(image.height);
-  e.radiance.resize(r->size());
-  for (size_t i = 0; i < r->size(); ++i) e.radiance[i] = {(*r)[i], (*g)[i], (*b)[i]};
-  return e;
+// Converts colours of other primaries than Rec. 709's.
+void convertToRec709(EnvironmentImage& e) {
+  if (!e.primaries || isRec709(*e.primaries)) return;
+  const std::optional<Matrix3> m = rec709From(*e.primaries);
+  e.primaries.reset();
+  if (!m) return;
+  for (Vec3& L : e.radiance) L = vec3Of(times(*m, doubles(L)));
 }
 
 bool isExr(const fs::path& file) { return lowerExtension(file) == ".exr"; }
@@ -150,7 +145,10 @@ EnvironmentImage decodeEnvironment(const fs::path& file) {
   const std::string bytes = readBytes(file);
   if (isFloats(bytes)) return decodeFloats(file, bytes);
   const Texture t = decodeColours(file, bytes, true);
-  EnvironmentImage e{t.width, t.height, {}, t.damage};
+  EnvironmentImage e;
+  e.width = t.width;
+  e.height = t.height;
+  e.damage = t.damage;
   e.radiance.resize(size_t{t.width} * t.height);
   for (size_t i = 0; i < e.radiance.size(); ++i) {
     e.radiance[i] = {srgbToLinear(t.rgba[4 * i]), srgbToLinear(t.rgba[4 * i + 1]),
@@ -177,13 +175,15 @@ size_t requireFinite(const fs::path& file, EnvironmentImage& e) {
 
 // `alpha` holds one value per texel, or is empty.
 Texture textureOfFloats(const fs::path& file, EnvironmentImage image,
-                        const std::vector<float>& alpha, bool mask) {
+                        const std::vector<float>& alpha, bool srgb, bool mask) {
+  if (srgb) convertToRec709(image);
   Texture t;
   t.width = image.width;
   t.height = image.height;
   t.srgb = false;
   t.negative = requireFinite(file, image);
   t.damage = image.damage;
+  t.notes = std::move(image.notes);
   t.floats.reserve(4 * image.radiance.size());
   const bool varies = !alpha.empty() && std::ranges::any_of(alpha, [](float a) { return a != 1; });
   for (size_t i = 0; i < image.radiance.size(); ++i) {
@@ -199,12 +199,12 @@ Texture textureOfFloats(const fs::path& file, EnvironmentImage image,
 Texture loadTexture(const fs::path& file, bool srgb, bool mask) {
   if (!isExr(file)) return decodeTexture(file, readBytes(file), srgb, mask);
   std::vector<float> alpha;
-  EnvironmentImage image = fromExr(file, &alpha);
-  return textureOfFloats(file, std::move(image), alpha, mask);
+  EnvironmentImage image = readExrColours(file, &alpha);
+  return textureOfFloats(file, std::move(image), alpha, srgb, mask);
 }
 
 Texture decodeTexture(const fs::path& name, const std::string& bytes, bool srgb, bool mask) {
-  if (isFloats(bytes)) return textureOfFloats(name, decodeFloats(name, bytes), {}, mask);
+  if (isFloats(bytes)) return textureOfFloats(name, decodeFloats(name, bytes), {}, srgb, mask);
   Texture t = decodeColours(name, bytes, srgb);
   if (mask) {
     bool varies = false;
@@ -220,7 +220,8 @@ Texture decodeTexture(const fs::path& name, const std::string& bytes, bool srgb,
 }
 
 EnvironmentImage loadEnvironment(const fs::path& file, size_t& negative) {
-  EnvironmentImage e = isExr(file) ? fromExr(file) : decodeEnvironment(file);
+  EnvironmentImage e = isExr(file) ? readExrColours(file) : decodeEnvironment(file);
+  convertToRec709(e);
   negative = requireFinite(file, e);
   return e;
 }

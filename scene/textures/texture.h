@@ -3,11 +3,13 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/errors.h"
 #include "core/vec3.h"
+#include "scene/primaries.h"
 
 namespace bnvpl {
 
@@ -25,6 +27,7 @@ struct Texture {
   std::vector<float> floats;
   size_t negative = 0;  // texels of `floats` whose negative values were set to 0
   std::string damage;   // why texels may be wrong; empty for a sound file
+  std::vector<std::string> notes;                  // what of the file is read otherwise than asked
   std::array<float, 2> scale{1, 1}, offset{0, 0};  // transform texture coordinates (MTL -s, -o)
 
   Vec3 lookup(float u, float v) const;              // bilinear, linear sRGB
@@ -46,19 +49,22 @@ struct EnvironmentImage {
   uint32_t width = 0, height = 0;
   std::vector<Vec3> radiance;           // row-major from the top
   std::string damage;                   // why pixels may be wrong; empty for a sound file
+  std::vector<std::string> notes;       // what of the file is read otherwise than asked
+  std::optional<Primaries> primaries;   // those of `radiance`; empty: Rec. 709
   Vec3 lookup(float u, float v) const;  // nearest texel, as in the piecewise-constant density
 };
 
 // Reads PNG, JPEG, TGA, BMP, HDR or PFM, told apart by content, or EXR, by extension. Floats are
-// linear whatever `srgb` says. The alpha channel of a mask is the image's own alpha if that varies,
-// else its luminance. Throws InputError.
+// linear whatever `srgb` says; those of colours, which `srgb` marks, are converted from the
+// primaries that the file states. The alpha channel of a mask is the image's own alpha if that
+// varies, else its luminance. Throws InputError.
 Texture loadTexture(const fs::path& file, bool srgb, bool mask);
 // Decodes the bytes of such a file, except for EXR; `name` is for messages.
 Texture decodeTexture(const fs::path& name, const std::string& bytes, bool srgb, bool mask);
 
-// Reads an EXR, HDR, PFM or 8-bit image (decoded from sRGB). Negative values, which resampling
-// produces, become 0; `negative` is the number of pixels that had some. Throws InputError, also for
-// values that are not finite.
+// Reads an EXR, HDR, PFM or 8-bit image (decoded from sRGB) as Rec. 709. Negative values, which
+// resampling produces, become 0; `negative` is the number of pixels that had some. Throws
+// InputError, also for values that are not finite.
 EnvironmentImage loadEnvironment(const fs::path& file, size_t& negative);
 
 float srgbToLinear(uint8_t encoded);

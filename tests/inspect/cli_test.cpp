@@ -36,6 +36,9 @@ TEST_F(Cli, DamagedFilesExitWith3) {
   EXPECT_EQ(mixed.code, kExitInput);
   EXPECT_TRUE(contains(mixed.output, "lit.vpl: OK")) << mixed.output;
   EXPECT_EQ(runInspect("info " + path("absent.vpl")).code, kExitInput);
+  writeAll(at("room.toml"), "[film]\n");
+  const Outcome scene = runInspect("info " + path("room.toml"));
+  EXPECT_TRUE(contains(scene.output, "or run vpl-inspect scene on a scene")) << scene.output;
 }
 
 TEST_F(Cli, UsageErrorsExitWith2) {

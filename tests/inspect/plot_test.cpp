@@ -93,11 +93,14 @@ TEST_F(Plot, ColoursNeedTheirColumn) {
   PlotOptions options;
   options.colour = DotColour::Flux;
   VplTable table = tinyRows(scene_.contentHash);
-  EXPECT_TRUE(contains(messageOf<InputError>([&] { visibleDots(table, accel, options, counts); }),
-                       "vpl-estimate or a vpl-place --method that lights VPLs"));
+  EXPECT_TRUE(
+      contains(messageOf<InputError>([&] { requireColours("a.vpl", table, options.colour); }),
+               "a.vpl: its rows have no flux to colour by; name a file from vpl-estimate or a "
+               "vpl-place --method that lights VPLs"));
   options.colour = DotColour::Radius;
-  EXPECT_TRUE(contains(messageOf<InputError>([&] { visibleDots(table, accel, options, counts); }),
-                       "vpl-eliminate"));
+  EXPECT_TRUE(
+      contains(messageOf<InputError>([&] { requireColours("a.vpl", table, options.colour); }),
+               "a.vpl: its rows have no radius to colour by; run vpl-eliminate"));
 
   table.stage = VplStage::Lit;
   table.radius = {1, 2, 3, 4};

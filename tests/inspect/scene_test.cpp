@@ -153,6 +153,7 @@ TEST_F(SceneReport, ListsObjectsAndWritesTheirNames) {
   const Outcome text = runInspect("scene " + quoted(at("all.toml")));
   EXPECT_TRUE(contains(text.output, "'copy': 4 triangles in 1 instances")) << text.output;
   EXPECT_TRUE(contains(text.output, "emissive material 'key': (5 5 5) W")) << text.output;
+  EXPECT_TRUE(contains(text.output, "  0 (no name): position")) << text.output;
 
   ASSERT_EQ(runInspect("scene --to-toml " + quoted(at("copy")) + " " + quoted(at("all.toml"))).code,
             0);

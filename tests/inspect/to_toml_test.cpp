@@ -1,4 +1,5 @@
 // vpl-inspect scene --to-toml writes a scene equal to the original, and replaces no other files.
+#include "formats/image/exr_io.h"
 #include "formats/image/png_io.h"
 #include "scene/choose_view.h"
 #include "scene/load_scene.h"
@@ -132,9 +133,15 @@ TEST_F(ToToml, KeepsTexturesMadeOfTextures) {
 
 TEST_F(ToToml, KeepsLampImages) {
   writePicture("t.png");
-  const Scene copy =
-      copyOfPbrt("AreaLightSource \"diffuse\" \"string filename\" \"t.png\"\n" + kSquare);
-  EXPECT_NE(copy.materials.at(copy.triangles[0].material).emissionTexture, kNone);
+  Image floats{.width = 1, .height = 1};
+  for (const char* name : {"R", "G", "B", "A"}) floats.add(name)[0] = 40.0f;
+  writeExr(at("t.exr"), floats, ExrPixelType::Float);
+  for (const std::string file : {"t.png", "t.exr"}) {
+    const Scene copy =
+        copyOfPbrt("AreaLightSource \"diffuse\" \"string filename\" \"" + file + "\"\n" + kSquare);
+    EXPECT_NE(copy.materials.at(copy.triangles[0].material).emissionTexture, kNone);
+    EXPECT_EQ(copy.textures.at(0).floats, std::vector(file == "t.exr" ? 4 : 0, 40.0f));
+  }
 }
 
 TEST_F(ToToml, KeepsEveryModel) {

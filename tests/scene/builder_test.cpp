@@ -152,7 +152,7 @@ TEST_F(Builder, TexturesAreNumberedByTheirUse) {
   EXPECT_EQ(read.opacityMap, 1u);
   EXPECT_FALSE(scene.textures.at(1).srgb);
   for (const char* part : {"bad.tga: cannot read", "gone.tga: no such texture",
-                           "m.obj: material '' has a texture but faces without texture"}) {
+                           "m.obj: its material has a texture but faces without texture"}) {
     EXPECT_EQ(countContaining(scene.warnings, part), 1u) << part << joined(scene.warnings);
   }
   std::vector<std::string> files;

@@ -106,7 +106,7 @@ TEST_F(Objects, GltfNamesThemByNodeOrMesh) {
   g.show("{\"mesh\":1}");
   g.show("{\"mesh\":2}");
   write("room.gltf", g.text());
-  EXPECT_EQ(objectsOf(loadScene(at("room.gltf"))), "M: 1, node 3: 1, Tür: 2, Door: 2");
+  EXPECT_EQ(objectsOf(loadScene(at("room.gltf"))), "M: 1, room node 3: 1, Tür: 2, Door: 2");
 }
 
 TEST_F(Objects, PbrtNamesThemByParameterObjectOrPlace) {
@@ -122,6 +122,15 @@ TEST_F(Objects, PbrtNamesThemByParameterObjectOrPlace) {
             (std::vector<std::string>{"s.pbrt:2", "lid", "more.pbrt:3", "top", "chair"}));
   EXPECT_EQ(joined(s.warnings).find("name"), std::string::npos) << joined(s.warnings);
   EXPECT_EQ(s.objectOf(s.worldEnd(), 0), 4u);
+}
+
+TEST_F(Objects, NamelessOnesOfSeveralFilesStaySeparate) {
+  const std::string room = triangleGltf().text();
+  write("a.gltf", room);
+  write("b.gltf", room);
+  EXPECT_EQ(objectsOf(load(kFilmAndCamera +
+                           "[[mesh]]\nfile = \"a.gltf\"\n[[mesh]]\nfile = \"b.gltf\"\n")),
+            "a node 0: 1, b node 0: 1");
 }
 
 }  // namespace

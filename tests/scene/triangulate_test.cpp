@@ -4,10 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <ctime>
 #include <numbers>
 #include <random>
 
 #include "tests/scene/scene_files.h"
+#include "tests/support/sanitizers.h"
 
 namespace bnvpl {
 namespace {
@@ -174,6 +176,25 @@ TEST_F(Polygons, OfAnObjAreCutByTheirShape) {
       "newmtl paint\nKd 1 1 1\n");
   EXPECT_NEAR(areaOfMaterial(s, "paint"), 24.0 - 4.0, 1e-5);
   EXPECT_EQ(joined(s.warnings), joined({s.warnings.front()}));
+}
+
+// Cutting tests each edge against each ear. Bounding boxes leave few of these tests.
+TEST(Triangulate, ConcavePolygonsOfManyCornersAreCutSoon) {
+  if (kSanitized) GTEST_SKIP() << "sanitizers are slow";
+  std::vector<FilePoint> star;
+  for (size_t i = 0; i < kMaxPolygonCorners; ++i) {
+    const double angle = 2.0 * std::numbers::pi * double(i) / double(kMaxPolygonCorners),
+                 radius = i % 2 == 0 ? 1.0 : 0.3;
+    star.push_back({radius * std::cos(angle), radius * std::sin(angle), 0.0});
+  }
+  const std::clock_t begin = std::clock();
+  for (int i = 0; i < 20; ++i) {
+    std::vector<std::array<uint32_t, 3>> triangles;
+    EXPECT_TRUE(triangulate(star, QuadCut::FirstCorner, triangles));
+    EXPECT_EQ(triangles.size(), kMaxPolygonCorners - 2);
+  }
+  const double seconds = double(std::clock() - begin) / CLOCKS_PER_SEC;
+  EXPECT_LT(seconds, 1.0);  // a tenth of that, on a processor of 2020
 }
 
 }  // namespace

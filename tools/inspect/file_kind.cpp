@@ -32,7 +32,9 @@ FileKind fileKind(const fs::path& file) {
   if (extension == ".vpl") return FileKind::Vpl;
   if (extension == ".exr") return FileKind::Exr;
   if (extension == ".shard") return FileKind::Shard;
-  throw InputError(file, "is neither a .vpl file nor an OpenEXR image nor a .shard");
+  throw InputError(file,
+                   "is neither a .vpl file nor an OpenEXR image nor a .shard; name one of these, "
+                   "or run vpl-inspect scene on a scene");
 }
 
 FileKind wholeFileKind(const fs::path& file) {

@@ -95,8 +95,9 @@ void ShardSet::joinParts(std::vector<Holder>& holders) {
       throw InputError(files_[h.file], "holds parts that there are not; make it again");
     if (i > 0 && h.first <= holders[i - 1].last) {
       const fs::path &a = files_[holders[i - 1].file], &b = files_[h.file];
-      throw InputError(a, "and " + b.string() + " both hold shard " + std::to_string(h.first) +
-                              " of " + std::to_string(of_) + "; leave one of them out");
+      throw InputError(a.string() + " and " + b.string() + " both hold shard " +
+                       std::to_string(h.first) + " of " + std::to_string(of_) +
+                       "; leave one of them out");
     }
     if (!parts_.empty() && parts_.back().second + 1 == h.first)
       parts_.back().second = h.last;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 #include <string_view>
 
 namespace bnvpl {
@@ -16,8 +17,22 @@ constexpr std::array<std::string_view, 14> kUnderstood{
     // These have no effect on the image:
     "KHR_xmp_json_ld", "KHR_materials_variants"};  // the default variant is rendered
 
+constexpr size_t kLongestName = 80;  // that is shown
+
 bool isUnderstood(const std::string& name) {
   return std::find(kUnderstood.begin(), kUnderstood.end(), name) != kUnderstood.end();
+}
+
+// Collects the names of the extensions that parts of the file have, listed or not.
+void collectUsed(const nlohmann::json& json, std::set<std::string>& names) {
+  if (!json.is_structured()) return;
+  for (const auto& [key, value] : json.items()) {
+    if (json.is_object() && key == "extras") continue;
+    if (json.is_object() && key == "extensions" && value.is_object()) {
+      for (const auto& [name, extension] : value.items()) names.insert(name);
+    }
+    collectUsed(value, names);
+  }
 }
 
 }  // namespace
@@ -34,9 +49,13 @@ void checkExtensions(const GltfDocument& document, SceneBuilder& builder) {
     throw GltfError(document.file, "/extensionsRequired/" + std::to_string(i),
                     "the extension " + required[i] + " is not read; export without it");
   }
-  for (const std::string& name : namesOf("extensionsUsed")) {
-    if (!isUnderstood(name))
-      builder.warn(document.file.string() + ": the extension " + name + " is ignored");
+  const std::vector<std::string> listed = namesOf("extensionsUsed");
+  std::set<std::string> used(listed.begin(), listed.end());
+  collectUsed(document.json, used);
+  for (const std::string& name : used) {
+    if (isUnderstood(name)) continue;
+    builder.warn(document.file.string() + ": the extension " +
+                 onOneLine(name).substr(0, kLongestName) + " is ignored");
   }
 }
 

@@ -90,6 +90,8 @@ GltfModel::GltfModel(const fs::path& file, SceneBuilder& builder) : file_(file),
   GltfDocument document = readGltfDocument(file);
   requireValid(document, [&](const std::string& text) { builder_.warn(text); });
   checkExtensions(document, builder);
+  if (const auto it = document.json.find("animations"); it != document.json.end() && !it->empty())
+    warn("animations are ignored: the scene stands as its nodes do");
   readBuffers(document);
   openViews(document.json);
   openImages(document.json);

@@ -11,12 +11,14 @@ namespace bnvpl {
 
 namespace {
 
-// The name of a placed node or, if it has none, of its mesh.
+// The name of a placed node or, if it has none, of its mesh. Without either, the name of the file
+// tells the node from those of other files.
 std::string nameOf(const GltfModel& model, size_t node) {
   const tinygltf::Node& from = model.parts().nodes[node];
   if (!from.name.empty()) return from.name;
   const std::string& mesh = model.parts().meshes[static_cast<size_t>(from.mesh)].name;
-  return mesh.empty() ? "node " + std::to_string(node) : mesh;
+  if (!mesh.empty()) return mesh;
+  return model.file().stem().string() + " node " + std::to_string(node);
 }
 
 // Decodes and stores each mesh once for all nodes that show it, unless they pose it.

@@ -46,7 +46,8 @@ void GltfTextureRef::read(unsigned texCoord, const tinygltf::Value& transform) {
         real(sx * sine),   real(sy * cosine), real(1.0 - oy - sy * cosine)};
 }
 
-uint32_t GltfMaterialTextures::add(const GltfTextureRef& ref, bool srgb, Channel channel) {
+uint32_t GltfMaterialTextures::add(const GltfTextureRef& ref, bool srgb, Channel channel,
+                                   const char* otherwise) {
   if (ref.texture < 0) return kNone;
   const tinygltf::Texture& texture = model_.parts().textures[static_cast<size_t>(ref.texture)];
   if (texture.source < 0) {
@@ -64,7 +65,10 @@ uint32_t GltfMaterialTextures::add(const GltfTextureRef& ref, bool srgb, Channel
   use.file = image.file;
   use.bytes = image.bytes;
   use.srgb = srgb;
-  const uint32_t number = builder_.addTexture(use);
+  const std::string where = model_.file().string() + "#" +
+                            gltfPointer("images", static_cast<size_t>(texture.source)) + ": ";
+  const uint32_t number =
+      builder_.addTexture(use, {otherwise, use.bytes ? "" : where});  // else its name says so
   if (number == kNone) return kNone;
   uvSet_ = ref.uvSet;
   TextureExpression e = imageExpression(number, channel);

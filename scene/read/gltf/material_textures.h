@@ -31,20 +31,30 @@ struct GltfTextureRef {
 // The textures of one material. All must use the same set of texture coordinates as the first one.
 class GltfMaterialTextures {
  public:
-  GltfMaterialTextures(const GltfModel& model, SceneBuilder& builder, std::string materialName)
-      : model_(model), builder_(builder), material_(std::move(materialName)) {}
+  // `material` is its name in messages.
+  GltfMaterialTextures(const GltfModel& model, SceneBuilder& builder, std::string material)
+      : model_(model), builder_(builder), material_(std::move(material)) {}
 
   // Each returns the number of an expression. It is kNone without a texture, and, with a warning,
   // for a texture that cannot be used.
-  uint32_t colour(const GltfTextureRef& ref) { return add(ref, true, Channel::Rgb); }
-  uint32_t alpha(const GltfTextureRef& ref) { return add(ref, true, Channel::Alpha); }
-  uint32_t data(const GltfTextureRef& ref, Channel channel) { return add(ref, false, channel); }
+  uint32_t colour(const GltfTextureRef& ref) {
+    return add(ref, true, Channel::Rgb, SceneBuilder::kPlainColour);
+  }
+  uint32_t alpha(const GltfTextureRef& ref) {
+    return add(ref, true, Channel::Alpha, SceneBuilder::kPlainColour);
+  }
+  uint32_t data(const GltfTextureRef& ref, Channel channel) {
+    return add(ref, false, channel, SceneBuilder::kPlainNumber);
+  }
+  uint32_t normals(const GltfTextureRef& ref) {
+    return add(ref, false, Channel::Rgb, SceneBuilder::kNoRelief);
+  }
 
   unsigned uvSet() const { return uvSet_.value_or(0); }
 
  private:
-  uint32_t add(const GltfTextureRef& ref, bool srgb, Channel channel);
-  void warn(const std::string& text) const { model_.warn("material '" + material_ + "': " + text); }
+  uint32_t add(const GltfTextureRef& ref, bool srgb, Channel channel, const char* otherwise);
+  void warn(const std::string& text) const { model_.warn("material " + material_ + ": " + text); }
 
   const GltfModel& model_;
   SceneBuilder& builder_;

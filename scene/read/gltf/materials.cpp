@@ -29,8 +29,14 @@ const tinygltf::Value& extensionOf(const tinygltf::Material& material, const cha
 
 class MaterialReader {
  public:
-  MaterialReader(const GltfModel& model, const tinygltf::Material& from, SceneBuilder& builder)
-      : model_(model), from_(from), builder_(builder), textures_(model, builder, from.name) {}
+  // `shown` is the material in messages.
+  MaterialReader(const GltfModel& model, const tinygltf::Material& from, const std::string& shown,
+                 SceneBuilder& builder)
+      : model_(model),
+        from_(from),
+        shown_(shown),
+        builder_(builder),
+        textures_(model, builder, shown) {}
 
   GltfSurface add() {
     Material m;
@@ -56,9 +62,7 @@ class MaterialReader {
   }
 
  private:
-  void warn(const std::string& text) const {
-    model_.warn("material '" + from_.name + "': " + text);
-  }
+  void warn(const std::string& text) const { model_.warn("material " + shown_ + ": " + text); }
 
   MetallicRoughnessModel metallicRoughness(const Colour& baseColour) {
     const auto& pbr = from_.pbrMetallicRoughness;
@@ -90,12 +94,11 @@ class MaterialReader {
   }
 
   void addRelief(Material& m) {
-    m.relief.normalMap = textures_.data(GltfTextureRef(from_.normalTexture), Channel::Rgb);
+    m.relief.normalMap = textures_.normals(GltfTextureRef(from_.normalTexture));
     m.relief.strength = real(from_.normalTexture.scale);
     const tinygltf::Value& coat = extensionOf(from_, "KHR_materials_clearcoat");
     if (!coat.Has("clearcoatNormalTexture")) return;
-    m.coatRelief.normalMap =
-        textures_.data(GltfTextureRef(coat, "clearcoatNormalTexture"), Channel::Rgb);
+    m.coatRelief.normalMap = textures_.normals(GltfTextureRef(coat, "clearcoatNormalTexture"));
     m.coatRelief.strength = real(gltfNumber(coat.Get("clearcoatNormalTexture"), "scale", 1.0));
   }
 
@@ -110,6 +113,8 @@ class MaterialReader {
 
   void addAlpha(Material& m, const GltfTextureRef& base) {
     const float alpha = real(from_.pbrMetallicRoughness.baseColorFactor[3]);
+    if (from_.alphaMode != "OPAQUE" && from_.alphaMode != "MASK" && from_.alphaMode != "BLEND")
+      warn("alphaMode '" + onOneLine(from_.alphaMode).substr(0, 60) + "' is unknown; it is opaque");
     if (from_.alphaMode == "MASK") {
       m.opacity = alpha;
       m.opacityCutoff = real(from_.alphaCutoff);
@@ -139,6 +144,7 @@ class MaterialReader {
 
   const GltfModel& model_;
   const tinygltf::Material& from_;
+  std::string shown_;
   SceneBuilder& builder_;
   GltfMaterialTextures textures_;
 };
@@ -163,7 +169,10 @@ std::vector<GltfSurface> addGltfMaterials(const GltfModel& model, SceneBuilder& 
   std::vector<GltfSurface> out(used.size());
   for (size_t i = 0; i < used.size(); ++i) {
     if (!used[i]) continue;
-    out[i] = MaterialReader(model, i < materials.size() ? materials[i] : plain, builder).add();
+    const tinygltf::Material& from = i < materials.size() ? materials[i] : plain;
+    const std::string shown =
+        from.name.empty() ? "#" + gltfPointer("materials", i) : "'" + from.name + "'";
+    out[i] = MaterialReader(model, from, shown, builder).add();
   }
   return out;
 }

@@ -43,6 +43,19 @@ Affine localOf(const tinygltf::Node& node) {
                  given(node.scale, kNoScale));
 }
 
+// The rotation of a node alone; the identity for a matrix that scales an axis to nothing.
+Affine rotationOf(const tinygltf::Node& node) {
+  if (node.matrix.size() != 16)
+    return fromTrs(kNoMove,
+                   node.rotation.empty() ? std::span<const double>(kNoTurn)
+                                         : std::span<const double>(node.rotation),
+                   kNoScale);
+  Affine a = localOf(node);
+  if (!(std::fabs(a.determinant()) > 0.0)) return {};
+  for (auto& row : a.m) row[3] = 0.0;
+  return a;
+}
+
 // Roots of a file without scenes: nodes that have no parent.
 std::vector<int> freeNodes(const tinygltf::Model& parts) {
   std::vector<bool> isChild(parts.nodes.size(), false);
@@ -75,19 +88,19 @@ std::vector<GltfPlacement> placeNodes(const GltfModel& model) {
   const auto& nodes = model.parts().nodes;
   std::vector<bool> placed(nodes.size(), false);
   std::vector<GltfPlacement> out;
-  const auto place = [&](int index, const Affine& parent) {
+  const auto place = [&](int index, const Affine& parent, const Affine& turn) {
     const auto node = static_cast<size_t>(index);
     if (placed[node]) {
       model.fail(gltfPointer("nodes", node),
                  "has two parents, or is its own ancestor; export the file again");
     }
     placed[node] = true;
-    out.push_back({node, parent * localOf(nodes[node])});
+    out.push_back({node, parent * localOf(nodes[node]), turn * rotationOf(nodes[node])});
   };
-  for (const int root : rootsOf(model)) place(root, Affine());
+  for (const int root : rootsOf(model)) place(root, {}, {});
   for (size_t i = 0; i < out.size(); ++i) {
-    const Affine parent = out[i].world;  // a copy, since `out` grows
-    for (const int child : nodes[out[i].node].children) place(child, parent);
+    const Affine parent = out[i].world, turn = out[i].turn;  // copies, since `out` grows
+    for (const int child : nodes[out[i].node].children) place(child, parent, turn);
   }
   return out;
 }
@@ -112,6 +125,12 @@ std::vector<Affine> instancesOf(const GltfModel& model, size_t node) {
   };
   const std::vector<double> moves = read("TRANSLATION", 3), turns = read("ROTATION", 4),
                             scales = read("SCALE", 3);
+  if (count == 0) {
+    model.warn(
+        "EXT_mesh_gpu_instancing without TRANSLATION, ROTATION and SCALE is ignored: the mesh "
+        "stands once");
+    return {Affine()};
+  }
   std::vector<Affine> out;
   for (size_t i = 0; i < count; ++i) {
     const auto element = [&](const std::vector<double>& of, std::span<const double> otherwise) {

@@ -8,6 +8,7 @@ namespace bnvpl {
 struct GltfPlacement {
   size_t node;   // number in the model
   Affine world;  // from the node to the scene
+  Affine turn;   // the rotations of `world` without its scales
 };
 
 // The nodes of the file's default scene, or of its first scene if it names no default; all nodes of

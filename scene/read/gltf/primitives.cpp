@@ -36,6 +36,9 @@ class PrimitiveData {
     return readNumbers(model_, it->second, components);
   }
 
+  // How the indices form triangles. A Draco mesh is a list of triangles whatever the mode says.
+  int mode() const { return draco_ ? TINYGLTF_MODE_TRIANGLES : primitive_.mode; }
+
   std::vector<uint32_t> indices(size_t vertices) const {
     if (draco_) return draco_->indices();
     if (primitive_.indices >= 0) return readIndices(model_, primitive_.indices);
@@ -151,7 +154,7 @@ std::optional<GltfPrimitive> readPrimitive(const GltfModel& model,
   for (size_t i = 1; i < out.uvs.size(); i += 2) out.uvs[i] = 1.0 - out.uvs[i];
 
   const std::vector<uint32_t> indices = data.indices(vertices);
-  forEachTriangle(primitive.mode, indices, [&](uint32_t a, uint32_t b, uint32_t c) {
+  forEachTriangle(data.mode(), indices, [&](uint32_t a, uint32_t b, uint32_t c) {
     const std::array<uint32_t, 3> corners{a, b, c};
     out.triangles.push_back({corners, flat ? kNoCorners : corners,
                              out.uvs.empty() ? kNoCorners : corners, surface.material});

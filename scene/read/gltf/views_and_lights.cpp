@@ -4,17 +4,24 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/number_text.h"
+
 namespace bnvpl {
 
 namespace {
 
 constexpr double kLumensPerWatt = 683.0;
 
-// The unit vector of d; `otherwise` if a node is scaled to nothing.
-Vec3 unitOr(const FilePoint& d, Vec3 otherwise) {
-  const double length = std::hypot(d[0], d[1], d[2]);
-  if (!(length > 0.0) || !std::isfinite(length)) return otherwise;
-  return fromOrigin({d[0] / length, d[1] / length, d[2] / length}, {});
+// Where the axis `d` of a light or camera points, of unit length. Their nodes' scales have no
+// meaning (glTF 2.0, 3.10; KHR_lights_punctual), so that one of 0 leaves the rotations.
+Vec3 directionOf(const GltfPlacement& placement, const FilePoint& d) {
+  for (const Affine* a : {&placement.world, &placement.turn}) {
+    const FilePoint turned = a->direction(d);
+    const double length = std::hypot(turned[0], turned[1], turned[2]);
+    if (length > 0.0 && std::isfinite(length))
+      return fromOrigin({turned[0] / length, turned[1] / length, turned[2] / length}, {});
+  }
+  return fromOrigin(d, {});
 }
 
 bool isFinite(const FilePoint& p) {
@@ -28,6 +35,11 @@ FilePoint placeOf(const GltfModel& model, const GltfPlacement& placement) {
                "lies out of range; move it nearer to the origin");
   }
   return place;
+}
+
+// The name of a part, or its JSON pointer, for messages.
+std::string nameOrPointer(const std::string& name, const char* array, size_t i) {
+  return name.empty() ? gltfPointer(array, i).insert(0, "#") : "'" + name + "'";
 }
 
 // A film with the camera's aspect and a shorter side of 540 pixels; 960 x 540 without an aspect.
@@ -44,7 +56,10 @@ Film filmOf(double aspect) {
 float radians(double angle) { return static_cast<float>(angle); }
 
 // The rim lies between the inner and outer cone. Its profile is that of spot lights in scene.toml.
-void setCone(const tinygltf::SpotLight& spot, LightSpec& light) {
+void setCone(const GltfModel& model, const tinygltf::SpotLight& spot, LightSpec& light) {
+  if (spot.innerConeAngle > spot.outerConeAngle) {
+    model.warn("a spot light's innerConeAngle exceeds its outerConeAngle, which is used for both");
+  }
   constexpr double kMin = 1e-4;
   const double outer = std::clamp(spot.outerConeAngle, kMin, std::numbers::pi / 2);
   light.coneRad = radians(outer);
@@ -59,18 +74,25 @@ void addGltfCamera(const GltfModel& model, const GltfPlacement& placement, Scene
   if (node.camera < 0) return;
   const tinygltf::Camera& from = model.parts().cameras[static_cast<size_t>(node.camera)];
   const std::string& name = node.name.empty() ? from.name : node.name;
+  const std::string shown = nameOrPointer(name, "cameras", static_cast<size_t>(node.camera));
   if (from.type != "perspective") {
-    model.warn("camera '" + name + "' is " + from.type + ", which is not rendered; it is left out");
+    model.warn("camera " + shown + " is " + from.type + ", which is not rendered; it is left out");
     return;
   }
   Camera camera;
-  camera.forward = unitOr(placement.world.direction({0, 0, -1}), {0, 0, -1});
-  const Vec3 up = unitOr(placement.world.direction({0, 1, 0}), {0, 1, 0});
+  camera.forward = directionOf(placement, {0, 0, -1});
+  const Vec3 up = directionOf(placement, {0, 1, 0});
   const Vec3 right = cross(camera.forward, up);
   camera.right = length(right) > 1e-6f ? normalize(right) : Frame(camera.forward).s;
   camera.up = cross(camera.right, camera.forward);
   camera.verticalFovRad = radians(from.perspective.yfov);
-  builder.addCamera(name, placeOf(model, placement), camera, filmOf(from.perspective.aspectRatio));
+  const Film film = filmOf(from.perspective.aspectRatio);
+  if (std::max(film.width, film.height) == kMaxFilmSide) {
+    model.warn("camera " + shown + ": a film of aspectRatio " +
+               shortestText(from.perspective.aspectRatio) + " is cut to " +
+               std::to_string(film.width) + " x " + std::to_string(film.height) + " pixels");
+  }
+  builder.addCamera(name, placeOf(model, placement), camera, film);
 }
 
 void addGltfLight(const GltfModel& model, const GltfPlacement& placement, SceneBuilder& builder) {
@@ -86,12 +108,12 @@ void addGltfLight(const GltfModel& model, const GltfPlacement& placement, SceneB
     const double colour = from.color.size() == 3 ? from.color[i] : 1.0;
     light.emission[i] = static_cast<float>(colour * from.intensity / kLumensPerWatt);
   }
-  light.direction = unitOr(placement.world.direction({0, 0, -1}), {0, 0, -1});
+  light.direction = directionOf(placement, {0, 0, -1});
   if (from.type == "point") {
     light.type = LightType::Point;
   } else if (from.type == "spot") {
     light.type = LightType::Spot;
-    setCone(from.spot, light);
+    setCone(model, from.spot, light);
   } else if (from.type == "directional") {
     light.type = LightType::Directional;
   } else {

@@ -94,12 +94,12 @@ void readRelief(const tinyobj::material_t& in, const MtlKeys& keys, const MtlMap
   const auto multiplier = static_cast<float>(in.bump_texopt.bump_multiplier);
   const float strength = std::isfinite(multiplier) ? multiplier : 1.0f;
   if (!in.normal_texname.empty()) {
-    relief.normalMap = maps.data(in.normal_texname, in.normal_texopt, Channel::Rgb);
+    relief.normalMap = maps.relief(in.normal_texname, in.normal_texopt, Channel::Rgb);
   } else if (keys.blender) {
-    relief.normalMap = maps.data(in.bump_texname, in.bump_texopt, Channel::Rgb);
+    relief.normalMap = maps.relief(in.bump_texname, in.bump_texopt, Channel::Rgb);
     relief.strength = strength;
   } else {
-    relief.bumpMap = maps.data(in.bump_texname, in.bump_texopt);
+    relief.bumpMap = maps.relief(in.bump_texname, in.bump_texopt, Channel::Mean);
     relief.heightInTexels = true;
     relief.strength = strength;
   }
@@ -123,14 +123,19 @@ void warnOfIgnored(const tinyobj::material_t& in, const MtlKeys& keys, const std
 
 }  // namespace
 
+std::string whereIs(const MaterialSource& from, const tinyobj::material_t& in) {
+  return from.library.string() + ":" + std::to_string(from.keys.line) + ": material '" + in.name +
+         "': ";
+}
+
 void expectTextures(const MaterialSource& from, const tinyobj::material_t& in,
                     SceneBuilder& builder) {
-  const MtlMaps maps(from, builder, true);
+  const MtlMaps maps(from, whereIs(from, in), builder, true);
   const bool facets = from.keys.metallicRoughness();
   if (!facets && isGlass(in.illum)) return;
   maps.image(in.diffuse_texname, in.diffuse_texopt, true);
   maps.image(in.specular_texname, in.specular_texopt, !facets);
-  maps.image(in.alpha_texname, in.alpha_texopt, false, true);
+  maps.mask(in.alpha_texname, in.alpha_texopt);
   maps.image(in.emissive_texname, in.emissive_texopt, true);
   maps.image(in.bump_texname, in.bump_texopt, false);
   maps.image(in.normal_texname, in.normal_texopt, false);
@@ -141,9 +146,9 @@ void expectTextures(const MaterialSource& from, const tinyobj::material_t& in,
 }
 
 uint32_t addMaterial(const MaterialSource& from, tinyobj::material_t in, SceneBuilder& builder) {
-  const std::string where = from.library.string() + ": material '" + in.name + "': ";
+  const std::string where = whereIs(from, in);
   greyWithoutColour(from.keys, where, builder, in);
-  const MtlMaps maps(from, builder, false);
+  const MtlMaps maps(from, where, builder, false);
   const bool facets = from.keys.metallicRoughness();
   Material m;
   m.name = in.name;
@@ -156,7 +161,7 @@ uint32_t addMaterial(const MaterialSource& from, tinyobj::material_t in, SceneBu
   readEmission(in, from.keys, maps, where, builder, m);
   if (facets || !isGlass(in.illum)) {
     readRelief(in, from.keys, maps, m);
-    m.opacityMap = maps.image(in.alpha_texname, in.alpha_texopt, false, true);
+    m.opacityMap = maps.mask(in.alpha_texname, in.alpha_texopt);
   }
   for (const std::string& note : from.keys.notes) builder.warn(note);
   warnOfIgnored(in, from.keys, where, builder);

@@ -18,6 +18,9 @@ struct MaterialSource {
 void expectTextures(const MaterialSource& from, const tinyobj::material_t& in,
                     SceneBuilder& builder);
 
+// The beginning of warnings about a material: "room.mtl:7: material 'wall': ".
+std::string whereIs(const MaterialSource& from, const tinyobj::material_t& in);
+
 // Returns the material's number in the scene.
 uint32_t addMaterial(const MaterialSource& from, tinyobj::material_t in, SceneBuilder& builder);
 

@@ -21,7 +21,11 @@ bool isReadable(const fs::path& file) { return isRegularFile(file) && std::ifstr
 
 // The libraries of an mtllib line, which is one name or a list of them. Existing files decide
 // which; without any, it is a list if all words end in .mtl.
-std::vector<fs::path> filesOf(const fs::path& folder, const std::string& line) {
+// A comment may follow the names.
+std::vector<fs::path> filesOf(const fs::path& folder, std::string line) {
+  if (const fs::path whole = pathOf(folder, line); isRegularFile(whole)) return {whole};
+  const size_t comment = std::min(line.find(" #"), line.find("\t#"));
+  if (comment != std::string::npos && comment > 0) line = trimmed(line.substr(0, comment));
   const fs::path whole = pathOf(folder, line);
   if (isRegularFile(whole)) return {whole};
   std::vector<fs::path> words;
@@ -64,6 +68,7 @@ void MaterialLibraries::readFile(const fs::path& library, const OnMaterial& onMa
     const auto stated = keys.find(m.name);
     keysOf.push_back(stated == keys.end() ? MtlKeys{} : stated->second);
     keysOf.back().notes = ignored.byMaterial[m.name];
+    keysOf.back().line = ignored.lines[m.name];
     if (numbers.try_emplace(oneWord(m.name), static_cast<int>(i)).second)  // the first of a name
       onMaterial(library, m, keysOf.back());
   }

@@ -14,6 +14,7 @@ struct MtlKeys {
   std::set<std::string, std::less<>> keys;
   std::vector<std::string> notes;  // what of its lines is ignored: MtlNotes
   bool blender = false;            // the library says that Blender wrote it
+  size_t line = 0;                 // where the material begins
 
   bool has(std::string_view key) const { return keys.contains(key); }
   // Whether it is read as metallic-roughness, else as Phong, mirror or glass

@@ -24,13 +24,13 @@ TextureUse MtlMaps::describe(const std::string& field,
   return use;
 }
 
-uint32_t MtlMaps::image(const std::string& field, const tinyobj::texture_option_t& options,
-                        bool srgb, bool mask) const {
+uint32_t MtlMaps::add(const std::string& field, const tinyobj::texture_option_t& options, bool srgb,
+                      bool mask, const char* otherwise) const {
   if (field.empty()) return kNone;
   TextureUse use = describe(field, options);
   use.srgb = srgb;
   use.mask = mask;
-  if (!expectOnly_) return builder_.addTexture(use);
+  if (!expectOnly_) return builder_.addTexture(use, {otherwise, where_});
   builder_.expectTexture(use);
   return kNone;
 }

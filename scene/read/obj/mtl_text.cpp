@@ -78,7 +78,10 @@ class Lines {
     const size_t blank = std::min(trimmedLine.find_first_of(" \t"), trimmedLine.size());
     const std::string_view key = usualKey(trimmedLine.substr(0, blank)),
                            rest = trimmed(trimmedLine.substr(blank));
-    if (key == "newmtl") material_ = rest;
+    if (key == "newmtl") {
+      material_ = rest;
+      notes_.lines.try_emplace(material_, number_);
+    }
     if (isOneOf(kColours, key))
       addColour(key, rest);
     else if (isOneOf(kNumbers, key))
@@ -96,7 +99,9 @@ class Lines {
                      ": " + problem);
   }
   void note(std::string_view key, const std::string& text) {
-    notes_.byMaterial[material_].push_back(library_.string() + ": " + std::string(key) + text);
+    notes_.byMaterial[material_].push_back(library_.string() + ":" + std::to_string(number_) +
+                                           ": material '" + material_ + "': " + std::string(key) +
+                                           text);
   }
   void write(std::string_view key, std::string_view rest) {
     text_.append(key).append(rest.empty() ? "" : " ").append(rest) += '\n';

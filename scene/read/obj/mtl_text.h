@@ -13,6 +13,7 @@ namespace bnvpl {
 // What a library says and the renderer ignores.
 struct MtlNotes {
   std::map<std::string, std::vector<std::string>> byMaterial;
+  std::map<std::string, size_t> lines;  // where the first material of a name begins
   // Keys that mean nothing here, each once with its first line: "'decal' (line 7)".
   std::vector<std::string> strangeKeys;
 };

@@ -56,7 +56,8 @@ class Builder {
     const std::string name = p_.text("filename");
     if (name.empty()) return {};
     const fs::path file = (r_.folder / name).lexically_normal();
-    if (!isRegularFile(file)) failAt(*p_.placeOf("filename"), "there is no image " + file.string());
+    if (!isRegularFile(file))
+      failAt(*p_.placeOf("filename"), "there is no image " + file.string() + "; check its name");
     return file;
   }
   EnvironmentImage squareImage(const fs::path& file) const {

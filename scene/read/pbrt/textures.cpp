@@ -83,7 +83,7 @@ std::optional<uint32_t> Textures::mask(const Params& params, const std::string& 
   use->scale = {uv.a, uv.e};
   use->offset = {uv.c, uv.f};
   masks_.insert(t);
-  return builder_.addTexture(*use);
+  return builder_.addTexture(*use, {SceneBuilder::kNoHoles, t->place.text() + ": "});
 }
 
 uint32_t Textures::image(const fs::path& file, bool srgb) {
@@ -159,7 +159,7 @@ uint32_t Textures::imagemap(const TextureEntity& t) {
   e.value = Vec3{float(t.params.number("scale", 1.0))};
   e.invert = t.params.boolean("invert", false);
   e.uv = mapping(t);
-  return builder_.addGreyableImage(*use, e, !t.isSpectrum);
+  return builder_.addGreyableImage(*use, e, !t.isSpectrum, t.place.text() + ": ");
 }
 
 UvTransform Textures::mapping(const TextureEntity& t) {

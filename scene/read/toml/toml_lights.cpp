@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/files.h"
+#include "core/read_file.h"
 #include "scene/read/toml/toml_view.h"
 
 namespace bnvpl {
@@ -30,6 +32,7 @@ void requireKeys(const TomlSection& s, const std::string& type, std::set<std::st
 
 // W/sr. The power of a spot is that to all sides, were it a point.
 Vec3 intensityOf(const TomlSection& s) {
+  if (!s.has("power") && !s.has("intensity")) s.fail("needs 'intensity' or 'power'; add one");
   if (!s.has("power")) return s.color("intensity");
   if (s.has("intensity")) s.fail("needs exactly one of 'power' and 'intensity'");
   return s.color("power") * (0.25f / kPi);
@@ -71,10 +74,16 @@ void readEnvironment(const TomlSection& s, const FileNames& names, SceneBuilder&
   if (s.has("radiance") == s.has("image")) s.fail("needs exactly one of 'radiance' and 'image'");
   light.scale = static_cast<float>(s.number("scale", 0.0, TomlSection::kMaxMagnitude, 1.0));
   light.rotateRad = radians(s.number("rotate_deg", -1e6, 1e6, 0.0));
-  if (s.has("radiance"))
+  if (s.has("radiance")) {
     light.emission = s.color("radiance");
-  else
-    light.image = builder.addEnvironment(names.resolve(s, "image"));
+    return;
+  }
+  const fs::path image = names.resolve(s, "image");
+  if (!isRegularFile(image)) {
+    s.fail(s.node("image"),
+           image.string() + ": " + whyUnreadable(image, "image") + "; check its name");
+  }
+  light.image = builder.addEnvironment(image);
 }
 
 void readLight(const TomlSection& s, const FileNames& names, SceneBuilder& builder) {

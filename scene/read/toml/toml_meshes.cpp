@@ -70,7 +70,6 @@ void include(const TomlSection& s, const fs::path& path, const FileNames& names,
         "'materials' replaces those of an OBJ; those of other files by a [[material]] of the same "
         "name");
   }
-  if (!isRegularFile(path)) s.fail(at, path.string() + ": " + whyUnreadable(path, "file"));
   if (const std::string problem = builder.whyNotInclude(path); !problem.empty())
     s.fail(at, path.string() + " " + problem);
   builder.beginInclude(path, readTransform(s), std::move(instances));
@@ -84,15 +83,22 @@ void readMesh(const fs::path& file, const toml::table& table, const FileNames& n
       file, "[[mesh]]", table,
       {"file", "materials", "transform", "translate", "rotate_deg", "scale", "instance"});
   const fs::path path = names.resolve(s, "file");
+  const auto require = [&](const char* key, const fs::path& named, const char* what) {
+    if (isRegularFile(named)) return;
+    s.fail(s.node(key), named.string() + ": " + whyUnreadable(named, what) + "; check its name");
+  };
   const bool several = s.has("instance");
   std::vector<SceneBuilder::Place> instances;
   if (several) instances = readInstances(file, table, builder);
-  if (isSceneFile(path) && lowerExtension(path) != ".obj")
-    return include(s, path, names, std::move(instances), builder);
-  if (std::ranges::count(kOtherFormats, lowerExtension(path)) > 0) {
+  const bool readable = std::ranges::count(kOtherFormats, lowerExtension(path)) == 0;
+  const bool whole = isSceneFile(path) && lowerExtension(path) != ".obj";
+  if (readable) require("file", path, whole ? "file" : "OBJ file");
+  if (whole) return include(s, path, names, std::move(instances), builder);
+  if (!readable) {
     s.fail(s.node("file"), path.string() + " is no file that is read; export it as glTF (.glb)");
   }
   const fs::path materials = s.has("materials") ? names.resolve(s, "materials") : fs::path();
+  if (s.has("materials")) require("materials", materials, "MTL file");
   if (!several) return loadObj(path, materials, readTransform(s), builder);
   const uint32_t prototype = builder.beginPrototype();
   loadObj(path, materials, readTransform(s), builder);

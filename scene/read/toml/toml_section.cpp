@@ -56,7 +56,11 @@ toml::table parseToml(const fs::path& file) {
 const toml::table& tableOf(const fs::path& file, const toml::table& root, const char* key) {
   const toml::node* node = root.get(key);
   const toml::table* table = node ? node->as_table() : nullptr;
-  if (!table) throw InputError(file, std::string("needs a [") + key + "] section; add it");
+  if (!node) throw InputError(file, std::string("needs a [") + key + "] section; add it");
+  if (!table) {
+    throw InputError(lineOf(file, node->source()) + "'" + key +
+                     "' must be one table; write it as [" + key + "]");
+  }
   return *table;
 }
 
@@ -104,6 +108,10 @@ void TomlSection::fail(const toml::node& node, const std::string& problem) const
   throw InputError(lineOf(file_, node.source()) + name_ + ": " + problem);
 }
 
+std::string TomlSection::where(const char* key) const {
+  return lineOf(file_, node(key).source()) + name_ + ": ";
+}
+
 const toml::node& TomlSection::node(const char* key) const {
   const toml::node* n = table_.get(key);
   if (!n) fail(std::string("needs '") + key + "'; add it");
@@ -141,6 +149,7 @@ std::string TomlSection::text(const char* key) const {
 
 std::string TomlSection::fileName(const char* key) const {
   std::string name = text(key);
+  if (name.empty()) fail(node(key), std::string("'") + key + "' is empty; name a file");
   if (std::any_of(name.begin(), name.end(), [](unsigned char c) { return c < ' '; })) {
     fail(node(key), std::string("'") + key + "' holds a control character" + kBackslashCure);
   }

@@ -37,6 +37,8 @@ class TomlSection {
 
   [[noreturn]] void fail(const toml::node& node, const std::string& problem) const;
   [[noreturn]] void fail(const std::string& problem) const { fail(table_, problem); }
+  // The beginning of a message about a key that is there: "scene.toml:7: [[material]]: ".
+  std::string where(const char* key) const;
   bool has(const char* key) const { return table_.contains(key); }
   const toml::node& node(const char* key) const;
 

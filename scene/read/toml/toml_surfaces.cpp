@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "scene/material_inputs.h"
+#include "scene/read/toml/toml_ranges.h"
 
 namespace bnvpl {
 
@@ -92,7 +93,7 @@ void TomlSurfaces::readTexture(const TomlSection& s) {
       TextureUse use;
       use.file = names_.resolve(s, "image");
       use.srgb = choice(s, "encoding", kEncodingNames, 0) == 0;
-      e.image = builder_.addTexture(use);
+      e.image = builder_.addTexture(use, {SceneBuilder::kPlainColour, s.where("image")});
       e.channel = static_cast<Channel>(choice(s, "channel", kChannelNames, 0));
       if (s.has("factor")) e.value = s.vector("factor", kMaxFactor);
       e.invert = s.flag("invert", false);
@@ -155,6 +156,7 @@ void TomlSurfaces::readMaterial(const toml::table& table) {
   };
   std::visit([&](auto& parameters) { forEachField(parameters, Fields{*this, s}); }, m.model);
   readCommon(s, m);
+  warnOfClamped(s, m, builder_);
   const std::string name = m.name;
   materials_[name] = builder_.addReplacement(std::move(m));
 }

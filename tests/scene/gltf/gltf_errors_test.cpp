@@ -134,5 +134,46 @@ TEST_F(GltfErrors, SkinsAndTargetsMustFitTheMesh) {
   expectError(targets, "/meshes/0/primitives/0/targets/0", "another number of vertices");
 }
 
+TEST_F(GltfErrors, ExtensionsThatAreNotListedAreNamed) {
+  Gltf g = triangleGltf(",\"material\":0");
+  g.add("materials", "{\"extensions\":{\"KHR_materials_sheen\":{}}}");
+  g.more = ",\"extensionsUsed\":[\"KHR_materials_unlit\"]";
+  const Scene s = load(g);
+  EXPECT_EQ(countContaining(s.warnings, "the extension KHR_materials_sheen is ignored"), 1u)
+      << joined(s.warnings);
+}
+
+TEST_F(GltfErrors, WhatIsIgnoredIsNamed) {
+  Gltf g = triangleGltf(",\"material\":0");
+  g.add("materials", "{\"alphaMode\":\"GLOW\"}");
+  g.add("animations", "{\"channels\":[],\"samplers\":[]}");
+  const Scene s = load(g);
+  EXPECT_EQ(countContaining(s.warnings, "animations are ignored"), 1u) << joined(s.warnings);
+  EXPECT_EQ(countContaining(s.warnings, "material #/materials/0: alphaMode 'GLOW' is unknown"), 1u);
+  EXPECT_EQ(countContaining(s.warnings, "''"), 0u);
+}
+
+TEST_F(GltfErrors, AMaterialWithoutANameAndATextureWithoutCoordinates) {
+  write("t.tga", tga(1, 1, {{9, 9, 9, 255}}));
+  Gltf g = triangleGltf(",\"material\":0");
+  g.add("images", "{\"uri\":\"t.tga\"}");
+  g.add("textures", "{\"source\":0}");
+  g.add("materials", "{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}}}");
+  const Scene s = load(g);
+  EXPECT_EQ(
+      countContaining(s.warnings, "room.gltf#/meshes/0/primitives/0: its material has a texture"),
+      1u)
+      << joined(s.warnings);
+}
+
+TEST_F(GltfErrors, InstancesWithoutPlacesAreOne) {
+  Gltf g = cornerGltf();
+  g.addMesh("{\"attributes\":{\"POSITION\":0}}");
+  g.show("{\"mesh\":0,\"extensions\":{\"EXT_mesh_gpu_instancing\":{\"attributes\":{}}}}");
+  const Scene s = load(g);
+  EXPECT_EQ(s.triangles.size(), 1u);
+  EXPECT_EQ(countContaining(s.warnings, "the mesh stands once"), 1u) << joined(s.warnings);
+}
+
 }  // namespace
 }  // namespace bnvpl

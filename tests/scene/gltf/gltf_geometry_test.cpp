@@ -1,5 +1,3 @@
-#include <draco/compression/encode.h>
-#include <meshoptimizer.h>
 
 #include "scene/scene_builder.h"
 #include "tests/scene/gltf/gltf_files.h"
@@ -261,76 +259,6 @@ TEST_F(GltfGeometry, MorphTargetsOfManyVerticesMayBeSparse) {
         "[{\"POSITION\":1}]}]}");
   g.show("{\"mesh\":0}");
   EXPECT_EQ(load(g).bounds.upper.z, 5.0f);
-}
-
-TEST_F(GltfGeometry, DecodesMeshopt) {
-  const std::vector<uint16_t> indices{0, 1, 2};
-  std::vector<unsigned char> vertices(meshopt_encodeVertexBufferBound(3, 12)),
-      triangles(meshopt_encodeIndexBufferBound(3, 3));
-  vertices.resize(
-      meshopt_encodeVertexBuffer(vertices.data(), vertices.size(), kCorner.data(), 3, 12));
-  triangles.resize(
-      meshopt_encodeIndexBuffer(triangles.data(), triangles.size(), indices.data(), 3));
-  Gltf g;
-  const auto compressed = [&](const std::vector<unsigned char>& data, size_t stride,
-                              const std::string& mode) {
-    const size_t at = (g.bytes().size() + 3) / 4 * 4;
-    g.addView(bytesOf(data),
-              ",\"extensions\":{\"EXT_meshopt_compression\":{\"buffer\":0,"
-              "\"byteOffset\":" +
-                  std::to_string(at) + ",\"byteLength\":" + std::to_string(data.size()) +
-                  ",\"byteStride\":" + std::to_string(stride) + ",\"count\":3,\"mode\":\"" + mode +
-                  "\"}}");
-  };
-  compressed(vertices, 12, "ATTRIBUTES");
-  compressed(triangles, 2, "TRIANGLES");
-  g.add("accessors", "{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"" +
-                         kCornerBounds + "}");
-  g.add("accessors", "{\"bufferView\":1,\"componentType\":5123,\"count\":3,\"type\":\"SCALAR\"}");
-  g.addMesh("{\"attributes\":{\"POSITION\":0},\"indices\":1}");
-  g.show("{\"mesh\":0}");
-  g.more = ",\"extensionsRequired\":[\"EXT_meshopt_compression\"]";
-  expectCorners(load(g), 0, kAsWritten);
-}
-
-std::string dracoTriangle() {
-  draco::Mesh mesh;
-  draco::GeometryAttribute positions;
-  positions.Init(draco::GeometryAttribute::POSITION, nullptr, 3, draco::DT_FLOAT32, false, 12, 0);
-  mesh.set_num_points(3);
-  const int id = mesh.AddAttribute(positions, true, 3);
-  for (uint32_t i = 0; i < 3; ++i)
-    mesh.attribute(id)->SetAttributeValue(draco::AttributeValueIndex(i), &kCorner[3 * i]);
-  mesh.AddFace({draco::PointIndex(0), draco::PointIndex(1), draco::PointIndex(2)});
-  draco::EncoderBuffer buffer;
-  draco::Encoder encoder;
-  EXPECT_TRUE(encoder.EncodeMeshToBuffer(mesh, &buffer).ok());
-  return {buffer.data(), buffer.size()};
-}
-
-TEST_F(GltfGeometry, DecodesDraco) {
-  const std::string data = dracoTriangle();
-  const auto file = [&](const std::string& bytes) {
-    Gltf g;
-    const size_t view = g.addView(bytes);
-    g.add("accessors",
-          "{\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"" + kCornerBounds + "}");
-    g.add("accessors", "{\"componentType\":5123,\"count\":3,\"type\":\"SCALAR\"}");
-    g.addMesh(
-        "{\"attributes\":{\"POSITION\":0},\"indices\":1,\"extensions\":{"
-        "\"KHR_draco_mesh_compression\":{\"bufferView\":" +
-        std::to_string(view) + ",\"attributes\":{\"POSITION\":0}}}}");
-    g.show("{\"mesh\":0}");
-    g.more = ",\"extensionsRequired\":[\"KHR_draco_mesh_compression\"]";
-    return g;
-  };
-  const Scene s = load(file(data));
-  ASSERT_EQ(s.triangles.size(), 1u);
-  EXPECT_NEAR(areaOf(s, 0), 0.5, 1e-4);
-  EXPECT_GT(geometricNormal(s, 0).z, 0.9f);
-
-  EXPECT_NE(loadError(file(data.substr(0, data.size() / 2))).find("the Draco data are damaged"),
-            std::string::npos);
 }
 
 }  // namespace

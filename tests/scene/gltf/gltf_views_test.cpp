@@ -111,5 +111,71 @@ TEST_F(GltfViews, CandelaAndLuxBecomeRadiometric) {
   EXPECT_EQ(load(withLight("{\"type\":\"point\",\"range\":3.4e38}")).lights.size(), 1u);
 }
 
+// glTF 2.0, 3.10, and KHR_lights_punctual: only the rotation of the node counts.
+TEST_F(GltfViews, AScaleOfNothingLeavesRotations) {
+  Gltf g = triangleGltf();
+  g.add("cameras", "{\"type\":\"perspective\",\"perspective\":{\"yfov\":0.8,\"znear\":0.1}}");
+  const std::string child =
+      std::to_string(g.add("nodes",
+                           "{\"camera\":0,\"rotation\":[0,1,0,0],\"scale\":[0,0,0],\"extensions\":{"
+                           "\"KHR_lights_punctual\":{\"light\":0}}}"));
+  // A quarter of a turn about x, then half a turn about y.
+  g.show("{\"rotation\":[0.70710678,0,0,0.70710678],\"children\":[" + child + "]}");
+  g.more =
+      ",\"extensions\":{\"KHR_lights_punctual\":{\"lights\":[{\"type\":\"spot\",\"spot\":{}}]}}";
+  const Scene s = load(g);
+  EXPECT_LT(length(s.camera.forward - Vec3(0, -1, 0)), 1e-6f);
+  EXPECT_LT(length(s.camera.up - Vec3(0, 0, 1)), 1e-6f);
+  ASSERT_EQ(s.lights.size(), 1u);
+  EXPECT_LT(length(s.lights[0].direction - Vec3(0, -1, 0)), 1e-6f);
+}
+
+TEST_F(GltfViews, WhatCannotBeShownAsStatedIsToldOf) {
+  Gltf g = triangleGltf();
+  g.add("cameras",
+        "{\"type\":\"perspective\",\"perspective\":{\"yfov\":0.8,\"aspectRatio\":1000,"
+        "\"znear\":0.1}}");
+  g.add("cameras",
+        "{\"type\":\"orthographic\",\"orthographic\":{\"xmag\":1,\"ymag\":1,"
+        "\"zfar\":10,\"znear\":0.1}}");
+  g.show("{\"camera\":0}");
+  g.show("{\"camera\":1}");
+  const Scene s = load(g);
+  EXPECT_EQ(s.film.width, kMaxFilmSide);
+  EXPECT_EQ(countContaining(s.warnings, "camera #/cameras/0: a film of aspectRatio 1000 is cut"),
+            1u)
+      << joined(s.warnings);
+  EXPECT_EQ(countContaining(s.warnings, "camera #/cameras/1 is orthographic"), 1u);
+
+  const Scene wide = load(
+      withLight("{\"type\":\"spot\",\"spot\":{\"innerConeAngle\":0.9,\"outerConeAngle\":0.5}}"));
+  EXPECT_EQ(countContaining(wide.warnings, "innerConeAngle exceeds its outerConeAngle"), 1u);
+  EXPECT_EQ(wide.lights.at(0).falloffRad, 0.0f);
+}
+
+TEST_F(GltfViews, ACameraThatIsNoneOrSeveral) {
+  const auto message = [](const std::string& choice, Scene scene) {
+    try {
+      chooseCamera(choice, scene);
+    } catch (const UsageError& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  Gltf g = triangleGltf();
+  g.add("cameras", "{\"type\":\"perspective\",\"perspective\":{\"yfov\":0.8,\"znear\":0.1}}");
+  for (const char* name : {"Door", "Window", "Door"})
+    g.show("{\"camera\":0,\"name\":\"" + std::string(name) + "\"}");
+  const Scene s = load(g);
+  EXPECT_NE(message("Door", s).find("several cameras of this name; choose by number: 0, 2"),
+            std::string::npos);
+  EXPECT_NE(message("Wall", s).find("no such camera; its cameras have the numbers 0 'Door', 1"),
+            std::string::npos);
+  EXPECT_EQ(message("Window", s), "");
+  EXPECT_EQ(message("2", s), "");
+  EXPECT_NE(message("1", load(triangleGltf())).find("its camera has the number 0"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace bnvpl

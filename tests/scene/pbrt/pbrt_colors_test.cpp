@@ -12,7 +12,7 @@ Vec3 light(const Spectrum& s) { return pbrt::srgbOf(pbrt::xyzOfLight(s)); }
 // The tables of the observer and of daylight agree with the CIE's published chromaticities.
 TEST(PbrtSpectra, DaylightAndBlackbodies) {
   const auto xy = [](const Spectrum& s) {
-    const pbrt::Xyz xyz = pbrt::xyzOfLight(s);
+    const Xyz xyz = pbrt::xyzOfLight(s);
     const double sum = xyz[0] + xyz[1] + xyz[2];
     return std::array{xyz[0] / sum, xyz[1] / sum};
   };

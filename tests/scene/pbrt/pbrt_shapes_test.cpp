@@ -169,6 +169,35 @@ TEST(Ply, ListsWithoutEndAreCutShort) {
   }
 }
 
+// An image without the mesh would look as if it had been asked for.
+TEST(Ply, AMeshWithoutFacesIsNoted) {
+  const std::string
+      vertices =
+          "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+          "property float z\n",
+      corners = "end_header\n0 0 0\n1 0 0\n0 1 0\n";
+  const std::string list = "property list uchar int ";
+  const std::map<std::string, std::string> bodies{
+      {"", ""},
+      {"element face 0\n" + list + "vertex_indices\n", ""},
+      {"element tristrips 1\n" + list + "vertex_indices\n", "3 0 1 2\n"},
+      {"element face 1\n" + list + "corners\n", "3 0 1 2\n"}};
+  for (const auto& [header, body] : bodies) {
+    const MeshData mesh = pbrt::readPly("a.ply", vertices + header + corners + body);
+    ASSERT_EQ(mesh.notes.size(), 1u) << header;
+    EXPECT_EQ(mesh.notes[0].find("a.ply: has no faces; it adds nothing"), 0u) << mesh.notes[0];
+    const bool unread = !body.empty();
+    EXPECT_EQ(mesh.notes[0].find("is not read; export") != std::string::npos, unread) << header;
+  }
+  const std::string both = "element face 1\n" + list + "vertex_indices\nelement tristrips 1\n" +
+                           list + "vertex_indices\n";
+  const MeshData mesh = pbrt::readPly("a.ply", vertices + both + corners + "3 0 1 2\n3 0 1 2\n");
+  ASSERT_EQ(mesh.notes.size(), 1u);
+  EXPECT_NE(mesh.notes[0].find("'vertex_indices' of element 'tristrips' is not read"),
+            std::string::npos);
+  EXPECT_TRUE(pbrt::readPly("a.ply", plySquare("ascii")).notes.empty());
+}
+
 TEST_F(PbrtShapes, PlyMeshes) {
   write("models/a.ply", plySquare("ascii"));
   const Scene scene = shape("Shape \"plymesh\" \"string filename\" [ \"models/a.ply\" ]");
@@ -176,6 +205,22 @@ TEST_F(PbrtShapes, PlyMeshes) {
   EXPECT_EQ(scene.files.back(), at("models/a.ply"));
   const std::string error = pbrtError("WorldBegin Shape \"plymesh\" \"string filename\" \"b.ply\"");
   EXPECT_NE(error.find("b.ply: no such file"), std::string::npos) << error;
+}
+
+TEST(Ply, MistakesInTheHeaderHaveTheirLine) {
+  const std::string start = "ply\nformat ascii 1.0\nelement vertex 3\n";
+  const std::map<std::string, std::string> mistakes{
+      {"property flaot x\n", "a.ply:4: the type 'flaot' is unknown; export the mesh again"},
+      {"element face many\n", "a.ply:4: 'many' is no number of 'face'"},
+      {"colour red\n", "a.ply:4: the header has the unknown line 'colour'"}};
+  for (const auto& [line, wanted] : mistakes) {
+    try {
+      pbrt::readPly("a.ply", start + line + "end_header\n");
+      FAIL() << line;
+    } catch (const InputError& e) {
+      EXPECT_EQ(std::string(e.what()).find(wanted), 0u) << e.what();
+    }
+  }
 }
 
 }  // namespace

@@ -79,16 +79,16 @@ TEST_F(PbrtSyntax, BlocksOfAThousandLevelsAreTooDeep) {
 }
 
 TEST_F(PbrtSyntax, UnknownThingsAreWarningsByNameAndLine) {
-  const Scene scene = loadWorld(
-      "Wobble \"x\" \"float y\" [1 2] 3 true\n"
+  const Scene scene = loadPbrt(
+      "Sampler \"x\" \"float y\" 1\nWobble \"x\" \"float y\" [1 2] 3 true\nWorldBegin\n"
       "Shape \"torus\" \"float r\" 1\nShape \"torus\" \"float r\" 1\n"
       "Shape \"sphere\" \"float colour\" 3\n"
-      "LightSource \"laser\"\nSampler \"x\" \"float y\" 1\nOption \"bool z\" true\n");
+      "LightSource \"laser\"\nOption \"bool z\" true\n");
   const std::string all = joined(scene.warnings);
   for (const char* part : {"scene.pbrt:2:1: directive 'Wobble' is unknown",
-                           "scene.pbrt:3:1: shape 'torus' is not read; it is left out (and 1 more)",
-                           "scene.pbrt:5:16: Shape \"sphere\": parameter 'colour' is unknown",
-                           "scene.pbrt:6:1: light 'laser' is not read"})
+                           "scene.pbrt:4:1: shape 'torus' is not read; it is left out (and 1 more)",
+                           "scene.pbrt:6:16: Shape \"sphere\": parameter 'colour' is unknown",
+                           "scene.pbrt:7:1: light 'laser' is not read"})
     EXPECT_NE(all.find(part), std::string::npos) << part << " not in\n" << all;
   EXPECT_EQ(countContaining(scene.warnings, "Sampler"), 0u);
   EXPECT_EQ(countContaining(scene.warnings, "Option"), 0u);
@@ -196,6 +196,43 @@ TEST_F(PbrtSyntax, MediaAreNamedAsNotRendered) {
       "Shape \"sphere\" AttributeEnd\n");
   EXPECT_EQ(scene.triangles.size(), 2u);  // an interface is not visible
   EXPECT_EQ(countContaining(scene.warnings, "media are not rendered"), 2u);
+}
+
+// pbrt-v4 refuses them as well.
+TEST_F(PbrtSyntax, OptionsStandAboveTheWorld) {
+  for (const char* option : {"Film \"rgb\"", "Camera \"perspective\"", "Sampler \"halton\"",
+                             "Integrator \"path\"", "Accelerator \"bvh\"", "PixelFilter \"box\""}) {
+    const std::string name(option, std::string(option).find(' '));
+    expectError("WorldBegin\n" + kSquareShape + option, "4:1",
+                {name + " stands behind WorldBegin; move it above"});
+    EXPECT_EQ(pbrtError(option + ("\nWorldBegin\n" + kSquareShape)), "") << option;
+  }
+}
+
+TEST_F(PbrtSyntax, AnUnknownFilmIsNamed) {
+  const Scene s = loadPbrt("Film \"image\" \"integer xresolution\" 8\nWorldBegin\n" + kSquareShape);
+  EXPECT_EQ(countContaining(s.warnings, "scene.pbrt:1:1: film 'image' is unknown"), 1u)
+      << joined(s.warnings);
+  EXPECT_EQ(s.film.width, 8u);
+  for (const char* film : {"rgb", "gbuffer", "spectral"}) {
+    const Scene known = loadPbrt("Film \"" + std::string(film) + "\"\nWorldBegin\n" + kSquareShape);
+    EXPECT_EQ(countContaining(known.warnings, "film"), 0u) << film;
+  }
+}
+
+TEST_F(PbrtSyntax, AByteOrderMarkIsSkipped) {
+  EXPECT_EQ(pbrtError("\xef\xbb\xbfWorldBegin\n" + kSquareShape), "");
+}
+
+TEST_F(PbrtSyntax, AMissingFileIsNamedWithItsPlace) {
+  expectError("WorldBegin\nInclude \"gone.pbrt\"", "2:1",
+              {"gone.pbrt: no such file; check its name"});
+  expectError("WorldBegin\nShape \"plymesh\" \"string filename\" \"gone.ply\"", "2:1",
+              {"gone.ply: no such file; check its name"});
+  const Scene s = loadWorld(
+      "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"gone.png\"\n"
+      "Material \"diffuse\" \"texture reflectance\" \"t\"\n");
+  EXPECT_EQ(countContaining(s.warnings, "scene.pbrt:2:1: "), 1u) << joined(s.warnings);
 }
 
 }  // namespace

@@ -84,25 +84,25 @@ std::vector<Vec3> radiusColours(const VplTable& table) {
 std::vector<Vec3> dotColours(const VplTable& table, const PlotOptions& options) {
   const DotColour colour = options.colour;
   if (colour == DotColour::Flux) {
-    if (table.stage < VplStage::Lit) {
-      throw InputError("the rows have no flux to colour by; name a file from " +
-                       std::string(stageTools(VplStage::Lit)));
-    }
     // The strongest channel counts: dots with the hue of their flux would be lost on walls of it.
     return logColours(strongestFlux(table));
   }
-  if (colour == DotColour::Radius) {
-    if (table.stage < VplStage::Eliminated) {
-      throw InputError("the rows have no radius to colour by; run vpl-eliminate first");
-    }
-    return radiusColours(table);
-  }
+  if (colour == DotColour::Radius) return radiusColours(table);
   if (colour == DotColour::Contribution)
     return logColours({options.contributions.begin(), options.contributions.end()});
   return std::vector<Vec3>(table.size(), kPlainDot);
 }
 
 }  // namespace
+
+void requireColours(const fs::path& file, const VplTable& table, DotColour colour) {
+  if (colour == DotColour::Flux && table.stage < VplStage::Lit) {
+    throw InputError(file, "its rows have no flux to colour by; name a file from " +
+                               std::string(stageTools(VplStage::Lit)));
+  }
+  if (colour == DotColour::Radius && table.stage < VplStage::Eliminated)
+    throw InputError(file, "its rows have no radius to colour by; run vpl-eliminate first");
+}
 
 Canvas shadeView(const Accelerator& accel, unsigned samplesPerAxis) {
   const Scene& scene = accel.scene();

@@ -40,8 +40,10 @@ struct PlotCounts {
 // show what they reflect or transmit.
 Canvas shadeView(const Accelerator& accel, unsigned samplesPerAxis);
 
-// The visible dots, in row order. Throws InputError if the colour needs a column that the rows do
-// not have.
+// Throws InputError, which names the file of the rows, if they lack the column of the colour.
+void requireColours(const fs::path& file, const VplTable& table, DotColour colour);
+
+// The visible dots, in row order. The rows must have the column of the colour.
 std::vector<Dot> visibleDots(const VplTable& table, const Accelerator& accel,
                              const PlotOptions& options, PlotCounts& counts);
 

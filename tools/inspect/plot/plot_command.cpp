@@ -69,6 +69,7 @@ int runPlot(const PlotRequest& command, const ToolOptions& tool) {
   PlotOptions options = command.plot;
   if (!command.colourGiven && table.stage == VplStage::Lit) options.colour = DotColour::Flux;
 
+  requireColours(command.file, table, options.colour);
   const Accelerator accel(scene);
   if (byContribution) {
     ProgressMeter meter("rows of pixels", contributionFilm(scene.film).height, progressStyle(tool));

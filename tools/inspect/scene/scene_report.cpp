@@ -117,6 +117,8 @@ std::string membersText(const Json& object, const std::vector<std::string>& with
   return text;
 }
 
+std::string named(const std::string& name) { return name.empty() ? "(no name)" : "'" + name + "'"; }
+
 }  // namespace
 
 Json describeScene(const Scene& scene, const LightSet& lights) {
@@ -169,7 +171,7 @@ std::string sceneText(const Json& asFound) {
            (o["instances"] == 0 ? "" : " in " + jsonText(o["instances"]) + " instances");
   });
   section("materials", [&](const Json& m) {
-    return "'" + text(m, "name") + "': " + text(m, "model") + "; " +
+    return named(text(m, "name")) + ": " + text(m, "model") + "; " +
            membersText(m, {"name", "model"});
   });
   section("lights", [&](const Json& l) {
@@ -177,8 +179,8 @@ std::string sceneText(const Json& asFound) {
            (l.contains("group") ? ", group " + text(l, "group") : "");
   });
   section("cameras", [&](const Json& c) {
-    return jsonText(c["number"]) + " '" + text(c, "name") +
-           "': " + membersText(c, {"number", "name"});
+    return jsonText(c["number"]) + " " + named(text(c, "name")) + ": " +
+           membersText(c, {"number", "name"});
   });
   section("textures", [&](const Json& t) {
     return jsonText(t["number"]) + " " + text(t, "file") + ": " + jsonText(t["width"]) + "x" +

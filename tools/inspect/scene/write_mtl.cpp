@@ -26,7 +26,7 @@ std::string mapLine(const Scene& scene, const std::string& key, const TextureExp
   std::string line = key + " ";
   if (uv.a != 1.0f || uv.e != 1.0f) line += option("-s ", uv.a, uv.e);
   if (uv.c != 0.0f || uv.f != 0.0f) line += option("-o ", uv.c, uv.f);
-  return line + textureFile(e.image) + "\n";
+  return line + textureFile(scene, e.image) + "\n";
 }
 std::string imageLine(const Scene& scene, const std::string& key, uint32_t image,
                       WrittenMaterials& used) {

@@ -161,10 +161,25 @@ std::string writeMeshes(const Scene& scene, const std::vector<std::string>& name
   return toml;
 }
 
+void writeFloats(const Texture& t, AtomicFile& file) {
+  Image image;
+  image.width = static_cast<int>(t.width);
+  image.height = static_cast<int>(t.height);
+  for (size_t k = 0; k < (t.hasAlpha() ? 4u : 3u); ++k) {
+    std::vector<float>& channel = image.add(std::string(1, "RGBA"[k]));
+    for (size_t p = 0; p < channel.size(); ++p) channel[p] = t.floats[4 * p + k];
+  }
+  writeExr(file, image, ExrPixelType::Float);
+}
+
 void writeTexture(const Scene& scene, uint32_t number, OutputFolder& folder) {
   const Texture& t = scene.textures[number];
-  if (!t.floats.empty())
-    throw InputError(t.name, "has floats, which a PNG cannot hold; convert it to 8 bits first");
+  AtomicFile file(folder.add(textureFile(scene, number)));
+  if (!t.floats.empty()) {
+    writeFloats(t, file);
+    file.commit();
+    return;
+  }
   bool opaque = true;
   for (size_t i = 3; i < t.rgba.size(); i += 4) opaque = opaque && t.rgba[i] == 255;
   std::vector<uint8_t> pixels;
@@ -172,7 +187,6 @@ void writeTexture(const Scene& scene, uint32_t number, OutputFolder& folder) {
   for (size_t i = 0; i < t.rgba.size(); ++i) {
     if (!opaque || i % 4 < 3) pixels.push_back(t.rgba[i]);
   }
-  AtomicFile file(folder.add(textureFile(number)));
   writePng(file, static_cast<int>(t.width), static_cast<int>(t.height), pixels, opaque ? 3 : 4);
   file.commit();
 }
@@ -207,7 +221,10 @@ void requireSame(const Scene& scene, const OutputFolder& folder) {
 
 }  // namespace
 
-std::string textureFile(uint32_t texture) { return "textures/" + std::to_string(texture) + ".png"; }
+std::string textureFile(const Scene& scene, uint32_t texture) {
+  const bool floats = !scene.textures[texture].floats.empty();
+  return "textures/" + std::to_string(texture) + (floats ? ".exr" : ".png");
+}
 
 UvTransform uvOfImage(const Scene& scene, const TextureExpression& image) {
   const Texture& t = scene.textures[image.image];

@@ -24,8 +24,8 @@ struct WrittenMaterials {
 std::string inQuotes(const std::string& text);
 // "[1, 0.5, 2]"
 std::string listText(Vec3 v);
-// The file of a texture, relative to the scene's folder.
-std::string textureFile(uint32_t texture);
+// The file of a texture, relative to the scene's folder: EXR of floats, else PNG.
+std::string textureFile(const Scene& scene, uint32_t texture);
 // Names of all materials, and of all objects, for MTL, OBJ and TOML: unique, and each one line of
 // UTF-8.
 std::vector<std::string> materialNames(const Scene& scene);

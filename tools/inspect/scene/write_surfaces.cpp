@@ -109,7 +109,7 @@ std::string Surfaces::image(const std::string& name, const TextureExpression& e)
   const UvTransform uv = uvOfImage(scene_, e);
   const bool srgb = e.channel != Channel::Alpha && scene_.textures[e.image].srgb;
   return "\n[[texture]]\nname = " + inQuotes(name) +
-         "\ntype = \"image\"\nimage = " + inQuotes(textureFile(e.image)) +
+         "\ntype = \"image\"\nimage = " + inQuotes(textureFile(scene_, e.image)) +
          "\nencoding = " + inQuotes(kEncodingNames[srgb ? 0 : 1]) +
          "\nchannel = " + nameIn(kChannelNames, e.channel) + "\nfactor = " + listText(e.value) +
          "\nwrap_u = " + nameIn(kWrapNames, e.wrapU) + "\nwrap_v = " + nameIn(kWrapNames, e.wrapV) +

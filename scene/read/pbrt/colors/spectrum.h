@@ -13,11 +13,10 @@
 
 #include "core/errors.h"
 #include "core/vec3.h"
+#include "scene/primaries.h"
 #include "scene/read/pbrt/syntax/params.h"
 
 namespace bnvpl::pbrt {
-
-using Xyz = std::array<double, 3>;
 
 // A spectrum that is linear between samples. As in pbrt, those of files and parameters are 0 beyond
 // them, and those that have a name are constant.

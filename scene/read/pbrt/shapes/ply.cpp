@@ -104,7 +104,8 @@ std::vector<Target> targetsOf(const fs::path& file, const PlyElement& element, M
       if (it != names.end()) targets[i] = {&array, names.size(), size_t(it - names.begin())};
     }
   };
-  if (!hasAll(element, {"x", "y", "z"})) throw InputError(file, "its vertices have no x, y and z");
+  if (!hasAll(element, {"x", "y", "z"}))
+    throw InputError(file, "its vertices have no x, y and z; export the mesh again");
   aim(mesh.positions, {"x", "y", "z"});
   aim(mesh.normals, {"nx", "ny", "nz"});
   for (const auto& names : {std::initializer_list<const char*>{"u", "v"},
@@ -152,6 +153,10 @@ bool readFace(Body& body, const PlyProperty& p, std::vector<uint32_t>& corners) 
   return true;
 }
 
+bool isCorners(const PlyProperty& p) {
+  return p.isList && (p.name == "vertex_indices" || p.name == "vertex_index");
+}
+
 // Faces of three or more corners, concatenated.
 struct Faces {
   std::vector<uint32_t> corners;
@@ -166,7 +171,7 @@ void readFaces(Body& body, const PlyElement& element, Faces& faces) {
     for (const PlyProperty& p : element.properties) {
       if (!p.isList) {
         body.skip(p.type, 1);
-      } else if (p.name != "vertex_indices" && p.name != "vertex_index") {
+      } else if (!isCorners(p)) {
         skipList(body, p);
       } else if (!readFace(body, p, corners)) {
         ++faces.unusable;
@@ -182,7 +187,8 @@ void requireVertices(const fs::path& file, const Faces& faces, const MeshData& m
   for (const uint32_t corner : faces.corners) {
     if (corner >= mesh.vertices()) {
       throw InputError(file, "has a face with a corner outside of its " +
-                                 std::to_string(mesh.vertices()) + " vertices");
+                                 std::to_string(mesh.vertices()) +
+                                 " vertices; export the mesh again");
     }
   }
 }
@@ -209,6 +215,44 @@ size_t cutFaces(const Faces& faces, MeshData& mesh) {
   return crossing;
 }
 
+void skipElement(Body& body, const PlyElement& element) {
+  for (size_t i = 0; i < element.count && !body.cut(); ++i) {
+    for (const PlyProperty& p : element.properties) {
+      if (p.isList) {
+        skipList(body, p);
+      } else {
+        body.skip(p.type, 1);
+      }
+    }
+  }
+}
+
+// What the file has in place of faces: elements such as tristrips, and lists of faces by names that
+// mean no corners. Empty if nothing looks like that.
+std::string unreadLists(const PlyHeader& header) {
+  std::string out;
+  for (const PlyElement& element : header.elements) {
+    if (element.name == "vertex" || element.count == 0) continue;
+    const bool isFace = element.name == "face";
+    if (isFace && std::ranges::any_of(element.properties, isCorners)) continue;
+    for (const PlyProperty& p : element.properties) {
+      if (!p.isList) continue;
+      out += (out.empty() ? "" : ", ") + ("'" + p.name + "' of element '" + element.name + "'");
+    }
+  }
+  return out;
+}
+
+void noteMissingFaces(const fs::path& file, const PlyHeader& header, MeshData& mesh) {
+  const std::string unread = unreadLists(header);
+  if (!mesh.triangles.empty() && unread.empty()) return;
+  const std::string cure = "export polygons as 'vertex_indices' of element 'face'";
+  mesh.notes.push_back(
+      file.string() + ": " +
+      (mesh.triangles.empty() ? "has no faces; it adds nothing" : "has faces that are left out") +
+      (unread.empty() ? "" : ": " + unread + " is not read; " + cure));
+}
+
 }  // namespace
 
 MeshData readPly(const fs::path& file, std::string_view bytes) {
@@ -224,22 +268,14 @@ MeshData readPly(const fs::path& file, std::string_view bytes) {
     } else if (element.name == "face") {
       readFaces(body, element, faces);
     } else {
-      for (size_t i = 0; i < element.count && !body.cut(); ++i) {
-        for (const PlyProperty& p : element.properties) {
-          if (p.isList) {
-            skipList(body, p);
-          } else {
-            body.skip(p.type, 1);
-          }
-        }
-      }
+      skipElement(body, element);
     }
     if (body.cut()) {
       throw InputError(file, "is cut short, or holds what is no number, in its '" + element.name +
                                  "' data; supply the whole file");
     }
   }
-  if (!hasVertices) throw InputError(file, "has no vertices");
+  if (!hasVertices) throw InputError(file, "has no vertices; export the mesh again");
   requireVertices(file, faces, mesh);
   if (const size_t crossing = cutFaces(faces, mesh); crossing > 0)
     mesh.notes.push_back(file.string() + ": " + crossingPolygons(crossing));
@@ -247,6 +283,7 @@ MeshData readPly(const fs::path& file, std::string_view bytes) {
     mesh.notes.push_back(file.string() + ": " + std::to_string(faces.unusable) +
                          " faces of less than 3 or more than 1024 corners are left out");
   }
+  noteMissingFaces(file, header, mesh);
   return mesh;
 }
 

@@ -10,7 +10,17 @@ namespace {
 
 constexpr size_t kMaxHeader = 1 << 20;  // bytes
 
-PlyType typeOf(const fs::path& file, const std::string& name) {
+// The line of the header that is being read.
+struct Line {
+  const fs::path& file;
+  size_t number = 0;
+  [[noreturn]] void fail(const std::string& problem) const {
+    throw InputError(file.string() + ":" + std::to_string(number) + ": " + problem +
+                     "; export the mesh again");
+  }
+};
+
+PlyType typeOf(const Line& line, const std::string& name) {
   static const std::map<std::string, PlyType> kTypes{
       {"char", PlyType::Int8},     {"int8", PlyType::Int8},     {"uchar", PlyType::Uint8},
       {"uint8", PlyType::Uint8},   {"short", PlyType::Int16},   {"int16", PlyType::Int16},
@@ -19,12 +29,11 @@ PlyType typeOf(const fs::path& file, const std::string& name) {
       {"float", PlyType::Float},   {"float32", PlyType::Float}, {"double", PlyType::Double},
       {"float64", PlyType::Double}};
   const auto known = kTypes.find(name);
-  if (known == kTypes.end())
-    throw InputError(file, "its header has the unknown type '" + name + "'");
+  if (known == kTypes.end()) line.fail("the type '" + name.substr(0, 64) + "' is unknown");
   return known->second;
 }
 
-PlyProperty propertyOf(const fs::path& file, std::istringstream& words) {
+PlyProperty propertyOf(const Line& line, std::istringstream& words) {
   PlyProperty p;
   std::string type;
   words >> type;
@@ -32,13 +41,13 @@ PlyProperty propertyOf(const fs::path& file, std::istringstream& words) {
     std::string count;
     words >> count >> type;
     p.isList = true;
-    p.countType = typeOf(file, count);
+    p.countType = typeOf(line, count);
     if (p.countType == PlyType::Float || p.countType == PlyType::Double)
-      throw InputError(file, "counts the values of a list by floats");
+      line.fail("the values of a list are counted by floats");
   }
-  p.type = typeOf(file, type);
+  p.type = typeOf(line, type);
   words >> p.name;
-  if (p.name.empty()) throw InputError(file, "has a property without a name");
+  if (p.name.empty()) line.fail("a property has no name");
   return p;
 }
 
@@ -72,13 +81,15 @@ size_t sizeOf(PlyType type) {
 }
 
 PlyHeader readPlyHeader(const fs::path& file, std::string_view bytes) {
-  if (!bytes.starts_with("ply")) throw InputError(file, "is no PLY file");
+  if (!bytes.starts_with("ply")) throw InputError(file, "is no PLY file; name one");
   PlyHeader header;
   bool hasFormat = false;
+  Line line{file};
   for (size_t at = 0; at < std::min(bytes.size(), kMaxHeader);) {
     const size_t end = std::min(bytes.find('\n', at), bytes.size());
     std::istringstream words(std::string(bytes.substr(at, end - at)));
     at = end + 1;
+    ++line.number;
     std::string word;
     words >> word;
     if (word == "format") {
@@ -89,7 +100,7 @@ PlyHeader readPlyHeader(const fs::path& file, std::string_view bytes) {
       } else if (word == "binary_big_endian") {
         header.format = PlyFormat::Big;
       } else if (word != "ascii") {
-        throw InputError(file, "has the unknown format '" + word + "'");
+        line.fail("the format '" + word.substr(0, 64) + "' is unknown");
       }
     } else if (word == "element") {
       PlyElement element;
@@ -97,18 +108,18 @@ PlyHeader readPlyHeader(const fs::path& file, std::string_view bytes) {
       words >> element.name >> count;
       const char* last = count.data() + count.size();
       if (count.empty() || std::from_chars(count.data(), last, element.count).ptr != last)
-        throw InputError(file, "has '" + count + "' of '" + element.name + "'; a count is needed");
+        line.fail("'" + count.substr(0, 64) + "' is no number of '" + element.name + "'");
       header.elements.push_back(std::move(element));
     } else if (word == "property") {
-      if (header.elements.empty()) throw InputError(file, "has a property before any element");
-      header.elements.back().properties.push_back(propertyOf(file, words));
+      if (header.elements.empty()) line.fail("a property stands before any element");
+      header.elements.back().properties.push_back(propertyOf(line, words));
     } else if (word == "end_header") {
-      if (!hasFormat) throw InputError(file, "has no format line in its header");
+      if (!hasFormat) line.fail("the header has no format");
       header.bodyBegin = std::min(at, bytes.size());
       requireRoom(file, header, bytes.size());
       return header;
     } else if (word != "ply" && word != "comment" && word != "obj_info" && !word.empty()) {
-      throw InputError(file, "its header has the unknown line '" + word.substr(0, 64) + "'");
+      line.fail("the header has the unknown line '" + word.substr(0, 64) + "'");
     }
   }
   throw InputError(file, "its header does not end; supply the whole file");

@@ -2,6 +2,8 @@
 
 #include <numbers>
 
+#include "core/files.h"
+#include "core/read_file.h"
 #include "scene/read/pbrt/shapes/ply.h"
 #include "scene/read/pbrt/syntax/text_file.h"
 #include "scene/shapes/quadrics.h"
@@ -46,6 +48,8 @@ MeshData tessellate(const Shape& shape, const fs::path& folder) {
   MeshData mesh;
   if (shape.type == "plymesh") {
     const fs::path file = meshFileOf(shape, folder);
+    if (!isRegularFile(file))
+      failAt(shape.place, file.string() + ": " + whyUnreadable(file, "file") + "; check its name");
     mesh = readPly(file, readPacked(file));
     mesh.windByNormals();
     if (params.has("displacement"))

@@ -4,6 +4,8 @@
 #include <cctype>
 #include <utility>
 
+#include "core/files.h"
+#include "core/read_file.h"
 #include "scene/read/pbrt/syntax/parser_class.h"
 
 namespace bnvpl::pbrt {
@@ -54,9 +56,9 @@ const std::unordered_map<std::string_view, Parser::Directive>& Parser::directive
       {"Include", &Parser::include},
       {"Import", &Parser::import},
       {"Option", &Parser::option},
-      {"Sampler", &Parser::ignoreEntity},
-      {"Integrator", &Parser::ignoreEntity},
-      {"Accelerator", &Parser::ignoreEntity},
+      {"Sampler", &Parser::ignoreOption},
+      {"Integrator", &Parser::ignoreOption},
+      {"Accelerator", &Parser::ignoreOption},
       {"PixelFilter", &Parser::pixelFilter},
   };
   return all;
@@ -70,6 +72,8 @@ void Parser::readFile(const fs::path& file, const Place* from) {
     failAt(*from, reading_.size() == kDeepestInclude ? "Includes lie more than 64 deep"
                                                      : "more than 10000 Includes");
   }
+  if (from && !isRegularFile(file))
+    failAt(*from, file.string() + ": " + whyUnreadable(file, "file") + "; check its name");
   ++included_;
   out_.files.push_back(file.string());
   const std::string text = readPacked(file);
@@ -220,10 +224,21 @@ void Parser::mediumInterface(const Token& at) {
     notes_.add(at.place, "MediumInterface: media are not rendered; the space is taken as empty");
 }
 
+void Parser::requireAboveWorld(const Token& at) const {
+  if (inWorld_)
+    failAt(at.place, std::string(at.text) + " stands behind WorldBegin; move it above that");
+}
+
+void Parser::ignoreOption(const Token& at) {
+  requireAboveWorld(at);
+  entity(at);
+}
+
 void Parser::worldBegin(const Token& at) {
   if (states_.depth() > 0) failAt(at.place, "WorldBegin stands within AttributeBegin; close it");
   now().transform = {};
   now().transformsStart = true;
+  inWorld_ = true;
   states_.coordinateSystems["world"] = {};
 }
 

@@ -27,6 +27,8 @@ class Parser {
   State& now() { return states_.now(); }
   Entity entity(const Token& at, const char* target = nullptr);
   void skipUnknown(const Token& at);
+  // Refuses a directive that must stand above WorldBegin, as pbrt-v4 does.
+  void requireAboveWorld(const Token& at) const;
 
   // Transforms.
   void identity(const Token& at) { states_.setTransform(at.place, {}); }
@@ -53,8 +55,8 @@ class Parser {
 
   // Camera, film, materials, lights and shapes.
   void camera(const Token& at);
-  void film(const Token& at) { out_.film = entity(at); }
-  void pixelFilter(const Token& at) { out_.pixelFilter = entity(at); }
+  void film(const Token& at);
+  void pixelFilter(const Token& at);
   void material(const Token& at);
   void namedMaterial(const Token& at);
   void makeNamedMaterial(const Token& at);
@@ -70,7 +72,7 @@ class Parser {
   // Files and ignored directives.
   void include(const Token& at);
   void import(const Token& at);
-  void ignoreEntity(const Token& at) { entity(at); }
+  void ignoreOption(const Token& at);
   void option(const Token&) { readParams(*tokens_, now().colorSpace, notes_); }
   void ignore(const Token&) {}
 
@@ -87,6 +89,7 @@ class Parser {
   Tokens* tokens_ = nullptr;       // tokens of the file that is being read
   std::vector<fs::path> reading_;  // that file and those that include it
   size_t included_ = 0;
+  bool inWorld_ = false;
   Object* object_ = nullptr;  // the object that ObjectBegin opened
   Place objectPlace_, end_;
 };

@@ -6,7 +6,21 @@
 
 namespace bnvpl::pbrt {
 
+void Parser::film(const Token& at) {
+  requireAboveWorld(at);
+  out_.film = entity(at);
+  const std::string& type = out_.film.type;
+  if (type != "rgb" && type != "gbuffer" && type != "spectral")
+    notes_.add(at.place, "film '" + type + "' is unknown; it is taken as rgb");
+}
+
+void Parser::pixelFilter(const Token& at) {
+  requireAboveWorld(at);
+  out_.pixelFilter = entity(at);
+}
+
 void Parser::camera(const Token& at) {
+  requireAboveWorld(at);
   out_.camera = entity(at);
   out_.cameraFromWorld = now().transform;
   const auto worldFromCamera = inverse(now().transform);

@@ -56,6 +56,7 @@ std::string readPacked(const fs::path& file) {
   const bool packed = text.size() > 2 && text[0] == '\x1f' && text[1] == '\x8b';
   if (packed) text = unpacked(file, text);
   requireNoUtf16(file, text);
+  if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);  // the byte order mark of UTF-8
   return text;
 }
 
