@@ -42,9 +42,10 @@ double areaOf(std::span<const Vec3> position, std::span<const Vec3> normal, unsi
 // Area that the candidates cover, world units squared. Many candidates are replaced by a random
 // subset, each of which has a larger share: FLANN builds its tree in one thread.
 double estimateArea(std::span<const Vec3> position, std::span<const Vec3> normal, unsigned k,
-                    uint64_t seed, const ProgressFn& progress) {
+                    const ProgressFn& progress) {
+  constexpr uint64_t kSeed = 1;  // the estimate depends on no option
   if (position.size() > kMaxAreaCandidates) {
-    const uint64_t key = streamKey(seed, RandomStream::AreaEstimate);
+    const uint64_t key = streamKey(kSeed, RandomStream::AreaEstimate);
     const uint64_t below = UINT64_MAX / position.size() * kMaxAreaCandidates;
     std::vector<Vec3> someOfPosition, someOfNormal;
     for (size_t i = 0; i < position.size(); ++i) {
@@ -80,7 +81,7 @@ CandidateRadii candidateRadii(std::span<const Vec3> position, std::span<const Ve
   const double given = options[kAreaOption];
   CandidateRadii result;
   if (options[kDensityOption] == "uniform") {
-    result.area = given > 0.0 ? given : estimateArea(position, normal, neighbours(), 1, progress);
+    result.area = given > 0.0 ? given : estimateArea(position, normal, neighbours(), progress);
     result.rMax = packedDiskRadius(result.area, count);
     result.radius.assign(position.size(), static_cast<float>(result.rMax));
     requireUsable(result.radius);
