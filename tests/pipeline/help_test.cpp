@@ -81,7 +81,7 @@ TEST_F(Help, JsonTellsKindDefaultRangeAndNeeds) {
   EXPECT_EQ(option("spp").at("default"), "16");
   EXPECT_EQ(option("spp").at("min"), 1);
   EXPECT_EQ(option("spp").at("max"), 4294967295.0);
-  EXPECT_EQ(option("clamp").at("unit"), "r_max");
+  EXPECT_EQ(option("clamp").at("unit"), "radii of the VPL");
   EXPECT_EQ(option("clamp").at("needs"), "--only all or indirect");
   for (const HelpJson& slot : render.at("slots"))
     EXPECT_EQ(option(slot.at("name")).at("choices").size(), slot.at("methods").size());

@@ -153,8 +153,9 @@ void describeWarnings(const Scene& scene, Json& json, Findings& findings) {
   }
   json["missing"] = missing;
   const auto isOfMissing = [&](const std::string& warning) {
-    return std::ranges::any_of(
-        missing, [&](const std::string& file) { return warning.starts_with(file + ": "); });
+    return std::ranges::any_of(missing, [&](const std::string& file) {
+      return warning.find(file + ": ") != warning.npos;
+    });
   };
   std::string names;
   for (size_t i = 0; i < missing.size() && i < kFilesShown; ++i)
