@@ -46,14 +46,10 @@ VisibilityPrediction::VisibilityPrediction(const SliceMatrix& matrix,
     : matrix_(matrix), columns_(columns) {
   Bounds seen;
   for (uint32_t r = 0; r < matrix.rows(); ++r) seen.extend(matrix.point(r).position);
-  const float size = length(seen.upper - seen.lower);
-  for (uint32_t r = 0; r < matrix.rows(); ++r) {
-    const SurfacePoint& p = matrix.point(r);
-    nearestRows_.push_back(nearest(matrix.rows(), r, matrix.rows(), [&](uint32_t i) {
-      const SurfacePoint& q = matrix.point(i);
-      return length(q.position - p.position) + size * length(q.ns - p.ns);
-    }));
-  }
+  size_ = length(seen.upper - seen.lower);
+  for (uint32_t r = 0; r < matrix.rows(); ++r)
+    nearestRows_.push_back(
+        nearest(matrix.rows(), r, kListed, [&](uint32_t i) { return apart(r, i); }));
   for (uint32_t c = 0; c < columns.size(); ++c) {
     const Vec3 here = matrix.vplPosition(columns[c]);
     nearestColumns_.push_back(nearest(columns.size(), c, kNearest, [&](uint32_t i) {
@@ -75,18 +71,29 @@ std::vector<bool> VisibilityPrediction::predict(Predictor predictor, size_t colu
   return {};
 }
 
+float VisibilityPrediction::apart(uint32_t row, uint32_t other) const {
+  const SurfacePoint &p = matrix_.point(row), &q = matrix_.point(other);
+  return length(q.position - p.position) + size_ * length(q.ns - p.ns);
+}
+
 std::vector<bool> VisibilityPrediction::byNearestRows(const Column& column,
                                                       std::span<const uint32_t> rows) const {
+  const std::span<const uint32_t> sampled = std::span(column.rows).first(column.sampled());
   std::vector<bool> out;
   for (const uint32_t row : rows) {
-    size_t found = 0;
-    int votes = 0;
+    std::vector<uint32_t> found;
     for (const uint32_t other : nearestRows_[row]) {
-      const Visibility v = column.visibility[other];
-      if (v == Visibility::Unknown) continue;
-      votes += static_cast<int>(v);
-      if (++found == kNearest) break;
+      if (column.visibility[other] != Visibility::Unknown) found.push_back(other);
+      if (found.size() == kNearest) break;
     }
+    if (found.size() < kNearest) {  // none is left out where all rows are listed
+      found.clear();
+      for (const uint32_t k : nearest(sampled.size(), UINT32_MAX, kNearest,
+                                      [&](uint32_t i) { return apart(row, sampled[i]); }))
+        found.push_back(sampled[k]);
+    }
+    int votes = 0;
+    for (const uint32_t other : found) votes += static_cast<int>(column.visibility[other]);
     out.push_back(votes >= 0);
   }
   return out;

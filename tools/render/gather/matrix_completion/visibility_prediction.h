@@ -29,13 +29,16 @@ class VisibilityPrediction {
 
  private:
   static constexpr size_t kNearest = 3;  // rows, and columns
+  static constexpr size_t kListed = 64;  // rows among which the sampled ones are looked for first
+  float apart(uint32_t row, uint32_t other) const;  // in position and normal
   std::vector<bool> byNearestRows(const Column& column, std::span<const uint32_t> rows) const;
   std::vector<bool> byPlane(const Column& column, std::span<const uint32_t> rows) const;
   std::vector<bool> byBayes(size_t column, std::span<const uint32_t> rows) const;
 
   const SliceMatrix& matrix_;
   std::span<const Column> columns_;
-  std::vector<std::vector<uint32_t>> nearestRows_;     // all others, of each row
+  float size_ = 0.0f;                                  // diagonal of the rows' points
+  std::vector<std::vector<uint32_t>> nearestRows_;     // kListed or less, of each row
   std::vector<std::vector<uint32_t>> nearestColumns_;  // kNearest or less, of each column
 };
 
