@@ -35,6 +35,20 @@ TEST_F(Strict, WarningsAreErrors) {
   succeed("vpl-place", scene_ + " -n 100 --quiet --strict -o " + path("c.vpl"));
 }
 
+// A photon that comes to no VPL leaves an image of direct light, which is told.
+TEST_F(Strict, VplsWithoutFluxAreAWarning) {
+  succeed("vpl-place", scene_ + " -n 200 --quiet -o " + path("c.vpl"));
+  succeed("vpl-eliminate", path("c.vpl") + " -n 1 --quiet -o " + path("v.vpl"));
+  succeed("vpl-estimate", scene_ + " " + path("v.vpl") +
+                              " --method guarded --photons 1 --quiet -o " + path("l.vpl"));
+  const std::string arguments =
+      scene_ + " " + path("l.vpl") + " --size 8x8 --spp 1 --quiet -o " + path("i.exr");
+  const Outcome told = tool("vpl-render", arguments);
+  EXPECT_EQ(told.code, kExitOk);
+  EXPECT_TRUE(contains(told.err, "l.vpl: no VPL has flux")) << told.err;
+  EXPECT_EQ(tool("vpl-render", arguments + " --strict").code, kExitInput);
+}
+
 TEST_F(Strict, NoClobberKeepsWhatExists) {
   const std::string arguments = scene_ + " -n 100 --quiet --no-clobber -o " + path("c.vpl");
   succeed("vpl-place", arguments);

@@ -82,6 +82,11 @@ VplTable readLit(const fs::path& lit, const Values& options, bool estimating) {
 void requireLitOf(const Scene& scene, const VplTable& lit, const fs::path& file) {
   requireSameScene(file, lit.sceneHash, scene, "rerun the pipeline from vpl-place on this scene");
   requireRadiiWithin(file, lit.radius, scene);
+  if (std::ranges::all_of(lit.flux, [](Vec3 flux) { return isBlack(flux); })) {
+    printWarnings("vpl-render",
+                  {file.string() + ": no VPL has flux, so that the image has direct light alone; "
+                                   "rerun vpl-estimate with more --photons"});
+  }
 }
 
 void warnOfMissedLight(const Scene& scene, const LightSet& lights, const Values& options,

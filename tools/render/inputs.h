@@ -31,7 +31,7 @@ void requireMemoryForImage(const Scene& scene, const Values& options);
 // Files that the image depends on.
 std::vector<fs::path> filesRead(const Scene& scene, const RenderFiles& files);
 
-// Throws InputError where the VPLs were not made on this scene.
+// Throws InputError where the VPLs were not made on this scene. Warns where none of them has flux.
 void requireLitOf(const Scene& scene, const VplTable& lit, const fs::path& file);
 
 // Warns of light that the chosen integrator cannot find. Throws InputError for lights that do not
