@@ -10,8 +10,8 @@
 
 namespace bnvpl::methods::estimate::both {
 
-// Estimate of a VPL by a pilot: flux, averaged over the channels, in W, and its variance. Of
-// photons also the variance that it would have if they started in proportion to power.
+// Estimate of a VPL by a pilot: flux, averaged over the channels, in W, and its variance.
+// For photons, varianceByPower is what it would be if they started in proportion to power.
 struct PilotEstimate {
   double flux = 0.0, variance = 0.0, varianceByPower = 0.0;
 };

@@ -63,7 +63,7 @@ TEST_P(MatrixCompletion, FewEntriesAreSampled) {
 }
 
 // Light u v^T, half of whose rows see one half of the columns, and the others the other: rank 2.
-// Of the entries that are not sampled, one in eight is predicted wrongly.
+// One in eight of the entries without a sample is predicted wrongly.
 TEST(MatrixSeparation, FindsMostOfTheWrongPredictions) {
   using methods::gather::matrix_completion::lowRankPart;
   constexpr size_t kRows = 120, kColumns = 80;
