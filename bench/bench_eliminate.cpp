@@ -10,8 +10,8 @@
 #include "core/random_streams.h"
 #include "spatial/cell_lists.h"
 #include "spatial/kd_tree.h"
-#include "spatial/local_density.h"
 #include "spatial/morton_order.h"
+#include "spatial/represented_area.h"
 #include "tools/eliminate/eliminate.h"
 #include "tools/eliminate/elimination/conflict_graph.h"
 #include "tools/eliminate/elimination/greedy.h"
@@ -148,7 +148,7 @@ void nearest(benchmark::State& state) {
   const Cloud& cloud = sortedRoom(state.range(0), true);
   const KdTree tree(cloud.position);
   for (auto _ : state) {
-    benchmark::DoNotOptimize(surfaceShares(cloud.position, cloud.normal, 20, tree));
+    benchmark::DoNotOptimize(representedAreas(cloud.position, cloud.normal, 20, tree));
   }
 }
 

@@ -16,7 +16,7 @@ inline __m128 squareRoot(__m128 a) { return _mm_sqrt_ps(a); }
 
 // A constant in every lane.
 template <typename F>
-F everyLane(float a) {
+F broadcast(float a) {
   if constexpr (sizeof(F) == sizeof(float)) {
     return a;
   } else {
@@ -34,13 +34,13 @@ inline __m128 selectAtLeast(__m128 a, __m128 b, __m128 yes, __m128 no) {
 // Sine of an angle from 0 to pi, given its cosine.
 template <typename F>
 F sineOf(F cosine) {
-  return squareRoot(larger(everyLane<F>(0.0f), everyLane<F>(1.0f) - cosine * cosine));
+  return squareRoot(larger(broadcast<F>(0.0f), broadcast<F>(1.0f) - cosine * cosine));
 }
 // Cosine of the difference of two angles, or 1 if the second is larger.
 template <typename F>
 F cosSubClamped(F cosine, F cosLess, F sinLess) {
   const F turned = cosine * cosLess + sineOf(cosine) * sinLess;
-  return selectAtLeast(cosine, cosLess, everyLane<F>(1.0f), turned);
+  return selectAtLeast(cosine, cosLess, broadcast<F>(1.0f), turned);
 }
 
 }  // namespace bnvpl

@@ -58,7 +58,7 @@ class ProgressFn {
   };
   // During the lifetime of the Phase, calls count towards `total` units of `what` ("radii"). The
   // ProgressFn must outlive it.
-  Phase before(std::string_view what, uint64_t total) const {
+  Phase beginPhase(std::string_view what, uint64_t total) const {
     if (begin_) begin_(what, total);
     return Phase(&end_);
   }

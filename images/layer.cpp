@@ -57,7 +57,11 @@ void requireFinite(const fs::path& file, const Layer& layer) {
       const size_t width = static_cast<size_t>(layer.width);
       throw InputError(file, "channel " + layer.channels[c] + " is not finite at pixel (" +
                                  std::to_string(i % width) + ", " + std::to_string(i / width) +
-                                 "); rerun vpl-render");
+                                 "); " +
+                                 (layer.channels[c] == "Z" ? "depth has no bound where the camera "
+                                                             "sees no surface: compare crops "
+                                                             "without background"
+                                                           : "rerun vpl-render"));
     }
   }
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <unordered_set>
 
 #include "core/parallel.h"
 
@@ -22,6 +23,7 @@ using Range = CellLists::Range;
 
 constexpr int kMaxLevels = 32;
 constexpr size_t kCellsAtOnce = 256;
+constexpr size_t kLeavesOfAnyTree = 4096;  // about 10 MB
 
 // The point list that OpenVDB partitions. Positions are in cells, because OpenVDB's transforms
 // reject voxels below 1e-5.
@@ -113,6 +115,22 @@ class Builder {
   CellLists lists_;
 };
 
+// True if a tree of these points would have more than a leaf for every four points. A leaf takes
+// 2 kB however few points it has, and an inner node, which spans 16^3 leaves, as much as 16 leaves.
+bool isSparse(const PointList& list) {
+  const size_t most = std::max(list.size() / 4, kLeavesOfAnyTree);
+  std::unordered_set<Coord> leaves, innerNodes;
+  for (size_t n = 0; n < list.size(); ++n) {
+    Vec3d position;
+    list.getPos(n, position);
+    const Coord cell = Coord::round(position);
+    leaves.insert(cell >> Leaf::TOTAL);
+    innerNodes.insert(cell >> (Leaf::TOTAL + 4));
+    if (leaves.size() + 16 * innerNodes.size() > most) return true;
+  }
+  return false;
+}
+
 void Builder::splitIntoLevels() {
   const float smallest = *std::min_element(radii_.begin(), radii_.end());
   levels_.resize(kMaxLevels);
@@ -128,9 +146,10 @@ void Builder::splitIntoLevels() {
   for (Level& level : levels_) {
     // The min cell size keeps cell numbers, which start at the world's origin, within 32 bits.
     const double size = std::max({2.0f * level.largestRadius, furthest * 1e-6f, 1e-30f});
-    level.cellsPerUnit = 1.0 / size;
-    level.grid = openvdb::tools::createPointIndexGrid<Grid>(
-        PointList{points_, level.members, level.cellsPerUnit}, 1.0);
+    PointList list{points_, level.members, 1.0 / size};
+    while (isSparse(list)) list.cellsPerUnit /= 2.0;  // radii far below the distances
+    level.cellsPerUnit = list.cellsPerUnit;
+    level.grid = openvdb::tools::createPointIndexGrid<Grid>(list, 1.0);
     level.grid->tree().getNodes(level.leaves);
   }
 }

@@ -72,6 +72,8 @@ class Bsdf {
   float specularProbability() const { return specularProbability_; }
   // Whether the specular group has delta lobes only, which light sampling cannot reach.
   bool specularIsDelta() const { return specularIsDelta_; }
+  // Whether light crosses the surface by lobes of the specular group.
+  bool transmits() const { return transmits_; }
   // Survival probability for Russian roulette: the largest channel of the albedo of both groups.
   float reflectance() const { return reflectance_; }
 
@@ -162,7 +164,7 @@ class Bsdf {
   const SurfacePoint& point_;
   // Lambert's law needs no frame: the point's own is made with the first other lobe.
   uint32_t frameCount_ = 0;
-  bool diffuseOnly_ = true, specularIsDelta_ = true, albedoIsConstant_ = true;
+  bool diffuseOnly_ = true, specularIsDelta_ = true, albedoIsConstant_ = true, transmits_ = false;
   float specularProbability_ = 0.0f, reflectance_ = 0.0f;
   float rough_ = 0.0f, specular_ = 0.0f;  // sums of the lobes' largest albedos
   Vec3 albedo_, roughAlbedo_, diffuseValue_;
@@ -198,6 +200,10 @@ void Bsdf::add(Vec3 weight, const L& lobe, const CoatAbove& above, uint32_t fram
   if (group == LobeGroup::Specular) {
     specular_ += most;
     specularIsDelta_ &= lobe.smooth();
+    if constexpr (requires { lobe.transmitted; })
+      transmits_ |= lobe.transmitted;
+    else
+      transmits_ |= std::is_same_v<L, DielectricLobe> || std::is_same_v<L, ThinSheetLobe>;
     return;
   }
   rough_ += most;

@@ -9,18 +9,22 @@ namespace bnvpl {
 
 namespace {
 
-// MIS weight of emission that a BSDF ray hit, against light sampling. place() gives the point of
-// the light's unit square that it hit.
+// MIS weight of emission that a BSDF ray hit, against light sampling and photons. place() gives the
+// point of the light's unit square that it hit.
 template <typename Place>
-float hitWeight(const LightSet& lights, size_t light, float lightPdf, const Arrival& arrival,
-                const Place& place) {
-  if (!(arrival.bsdfPdf > 0.0f)) return 1.0f;
+float hitWeight(const LightSet& lights, size_t light, float lightPdf, Vec3 towards,
+                const Arrival& arrival, const Place& place) {
+  const auto photons = [&](float shadowRays) {
+    return arrival.photons.rayWeight(light, towards, arrival.from, place, shadowRays);
+  };
+  if (!(arrival.bsdfPdf > 0.0f)) return photons(0.0f);
   const LearnedLight& learned = arrival.learned;
   const float rays = learned.strata
                          ? static_cast<float>(learned.rays) *
                                learned.strata->density({static_cast<uint32_t>(light), place()})
                          : shadowRaysTo(lights, light, arrival.choice);
-  return powerHeuristic(arrival.bsdfPdf, lightPdf * rays);
+  return powerHeuristic(arrival.bsdfPdf, lightPdf * rays) *
+         photons(PhotonMis::shadowRayRatio(lightPdf * rays, arrival.bsdfPdf));
 }
 
 }  // namespace
@@ -29,26 +33,6 @@ float shadowRaysTo(const LightSet& lights, size_t light, LightChoice choice) {
   if (choice == LightChoice::One) return lights.pickProbability(light);
   if (lights.size() <= kMaxLightsEach) return 1.0f;
   return static_cast<float>(kMaxLightsEach) * lights.pickProbability(light);
-}
-
-uint64_t emitterOf(const LightSet& lights, size_t light, Vec3 towards) {
-  const float density = lights.photonDensity(light, towards);
-  const int step = density > 0.0f && std::isfinite(density) ? (std::ilogb(density) + 512) / 2 : 0;
-  return uint64_t{light} << 9 | static_cast<uint64_t>(step);
-}
-
-bool PhotonMis::sends(size_t light, Vec3 towards) const {
-  if (!lights || !(photons * lights->pickProbability(light) > 0.0f)) return false;
-  return !lamps || !lights->hittable(light) ||
-         std::ranges::binary_search(*lamps, emitterOf(*lights, light, towards));
-}
-
-float PhotonMis::rayWeight(size_t light, Vec3 towards, float guided) const {
-  if (!sends(light, towards)) return 1.0f;
-  if (emissionBalance > 0.0f) return emissionBalance / (guided + emissionBalance);
-  if (!lights->hittable(light)) return 0.0f;
-  return powerHeuristic(rays, photons * lights->pickProbability(light) * guided *
-                                  lights->photonDensity(light, towards));
 }
 
 bool isHidden(const Accelerator& accel, const SurfacePoint& at, const LightSample& s) {
@@ -62,9 +46,8 @@ Vec3 emissionHit(const LightSet& lights, const SurfacePoint& hit, const Arrival&
   const Vec3 emitted = lights.emitted(hit, light);
   if (isBlack(emitted)) return {};
   const auto place = [&] { return lights.invertSample(light, hit); };
-  const float rayWeight = arrival.photons.rayWeight(light, -hit.wo, arrival.from, place);
   const float pdf = lights.pdfDirect(light, hit, arrival.from);
-  const Vec3 found = emitted * rayWeight * hitWeight(lights, light, pdf, arrival, place);
+  const Vec3 found = emitted * hitWeight(lights, light, pdf, -hit.wo, arrival, place);
   if (arrival.groups) arrival.groups.add(lights.group(light), found);
   return found;
 }
@@ -73,8 +56,7 @@ Vec3 emissionAtInfinity(const LightSet& lights, Vec3 direction, const Arrival& a
   Vec3 sum;
   lights.forEachAtInfinity(direction, [&](size_t light, Vec3 radiance, float pdf) {
     const auto place = [&] { return lights.invertSample(light, direction); };
-    const float rayWeight = arrival.photons.rayWeight(light, direction, arrival.from, place);
-    const Vec3 found = radiance * rayWeight * hitWeight(lights, light, pdf, arrival, place);
+    const Vec3 found = radiance * hitWeight(lights, light, pdf, direction, arrival, place);
     sum += found;
     if (arrival.groups) arrival.groups.add(lights.group(light), found);
   });

@@ -11,6 +11,7 @@
 #include "transport/group_sink.h"
 #include "transport/light_strata.h"
 #include "transport/lights.h"
+#include "transport/photon_mis.h"
 
 namespace bnvpl {
 
@@ -20,47 +21,6 @@ enum class LightChoice {
   Each  // one ray to each; with more than kMaxLightsEach lights, that many picks by power
 };
 inline constexpr size_t kMaxLightsEach = 32;
-
-// Identifies the emitter of photons: a light, or, in an environment image, a region of similar
-// radiance such as the sun. Regions are classes of photon density, in steps of a factor of 4.
-uint64_t emitterOf(const LightSet& lights, size_t light, Vec3 towards);
-
-// MIS weights of rays for light that photons estimate, too.
-//
-// Caustics of the film: the power heuristic, for light through specular vertices. Densities are
-// rays per area of the receiver and photons per area of the emitter. Their ratio is exact if the
-// specular surfaces between are flat; otherwise the weights still sum to one.
-//
-// Flux of VPLs (emissionBalance > 0): the balance heuristic by the density g with which photons
-// start on the path, relative to emission by power. Photons weigh g / (g + emissionBalance).
-struct PhotonMis {
-  const LightSet* lights = nullptr;  // null: there are no photons
-  float rays = 0.0f;                 // BSDF rays per area, 1/unit^2
-  float photons = 0.0f;              // number of photons from all lights
-  // Lamps (emitterOf) that emit photons, ascending; null: all do. Rays alone estimate the others.
-  const std::vector<uint64_t>* lamps = nullptr;
-  const EmissionGuide* guide = nullptr;  // density of the photons; null: by power
-  float emissionBalance = 0.0f;
-  // Weight of rays that reach `from` from the direction `towards` a light. place() tells where on
-  // the light: invertSample().
-  template <typename Place>
-  float rayWeight(size_t light, Vec3 towards, Vec3 from, const Place& place) const {
-    if (!sends(light, towards)) return 1.0f;
-    if (!lights->hittable(light) && !(emissionBalance > 0.0f)) return 0.0f;
-    const float guided =
-        guide && guide->guides()
-            ? guide->density({static_cast<uint32_t>(light),
-                              lights->invertEmission(light, place(), towards, from)})
-            : 1.0f;
-    return rayWeight(light, towards, guided);
-  }
-  // The same with the density of the photons relative to emission by power.
-  float rayWeight(size_t light, Vec3 towards, float guided) const;
-
- private:
-  // Whether photons carry light of the lamp.
-  bool sends(size_t light, Vec3 towards) const;
-};
 
 // Shadow rays by the learned distribution over the strata of all lights.
 struct LearnedLight {
@@ -214,9 +174,10 @@ typename Reflects::Light shadowRay(const Accelerator& accel, const LightSet& lig
   if (isHidden(accel, reflected.point(), s)) return {};
   const float other = s.pdf > 0.0f ? rayPdf(s.wi) : 0.0f;  // s.pdf 0: no ray can hit the light
   const float weight = other > 0.0f ? powerHeuristic(s.pdf * count, other) : 1.0f;
-  return light * (weight * photons.rayWeight(place.light, s.wi, reflected.point().position, [&] {
-           return place.at;
-         }) / count);
+  const auto where = [&] { return place.at; };
+  return light * (weight / count *
+                  photons.rayWeight(place.light, s.wi, reflected.point().position, where,
+                                    PhotonMis::shadowRayRatio(s.pdf * count, other)));
 }
 
 template <typename Reflects, typename RayPdf>

@@ -145,8 +145,8 @@ EmissionGuide::EmissionGuide(const LightSet& lights, std::span<const PilotPhoton
   if (!(guided / byPower < kWorthwhile)) cdf_.clear();
 }
 
-Emission EmissionGuide::draw(double choice, Rng& rng) const {
-  Emission e;
+EmissionSample EmissionGuide::draw(double choice, Rng& rng) const {
+  EmissionSample e;
   if (!guides()) {
     float probability = 0.0f;
     e.light = static_cast<uint32_t>(
@@ -164,7 +164,7 @@ Emission EmissionGuide::draw(double choice, Rng& rng) const {
   return e;
 }
 
-float EmissionGuide::density(const Emission& e) const {
+float EmissionGuide::density(const EmissionSample& e) const {
   if (!guides()) return 1.0f;
   const Node* node = &nodes_[root_[e.light]];
   while (node->dimension < 4)
@@ -191,7 +191,7 @@ Round traceRound(const LightSet& lights, const EmissionGuide& guide, uint64_t co
     for (uint64_t i = begin; i < end; ++i) {
       Rng rng(key, i);
       const double choice = (double(i) + double{rng.next()}) / double(count);
-      const Emission e = guide.draw(choice, rng);
+      const EmissionSample e = guide.draw(choice, rng);
       const PilotContribution c = estimate(e, lights.emit(e.light, e.at), rng, withProxy);
       const auto add = [&](PilotPhotons& to, double contribution) {
         const double f = contribution / double{lights.pickProbability(e.light)};
@@ -211,7 +211,7 @@ Round traceRound(const LightSet& lights, const EmissionGuide& guide, uint64_t co
 }
 
 // The mean density with which the rounds drew a photon (balance heuristic).
-double densityOf(std::span<const EmissionGuide> guides, const Emission& emission) {
+double densityOf(std::span<const EmissionGuide> guides, const EmissionSample& emission) {
   double density = 0.0;
   for (const EmissionGuide& g : guides) density += double{g.density(emission)};
   return density / double(guides.size());
@@ -231,7 +231,7 @@ LearnedEmission learnEmission(const LightSet& lights, uint64_t photons, uint64_t
   Round found;
   LearnedEmission out{EmissionGuide(lights)};
   const uint64_t count = std::max<uint64_t>(1, photons / kRounds);
-  const auto phase = progress.before("emission pilot, photons", count * kRounds);
+  const auto phase = progress.beginPhase("emission pilot, photons", count * kRounds);
   for (unsigned round = 0; round < kRounds; ++round) {
     guides.push_back(out.guide);
     const bool withProxy = found.targets.size() < kFew;

@@ -20,7 +20,7 @@
 namespace bnvpl {
 
 // A point in the emission of all lights.
-struct Emission {
+struct EmissionSample {
   uint32_t light = 0;
   PrimarySample at{};
 };
@@ -30,11 +30,11 @@ class EmissionGuide {
  public:
   // A useful pilot photon: `squares` is f^2 over the density with which it was drawn.
   struct PilotPhoton {
-    Emission emission;
+    EmissionSample emission;
     double squares = 0.0;
   };
 
-  // Emission by power.
+  // EmissionSample by power.
   explicit EmissionGuide(const LightSet& lights) : lights_(&lights) {}
   // `traced`: number of pilot photons, the useless ones included. The guide stays one by power
   // unless it promises much less noise.
@@ -43,9 +43,9 @@ class EmissionGuide {
   // Whether the density differs from emission by power.
   bool guides() const { return !cdf_.empty(); }
   // Draws a point; `choice`, in [0, 1), chooses the cell, or the light where nothing guides.
-  Emission draw(double choice, Rng& rng) const;
+  EmissionSample draw(double choice, Rng& rng) const;
   // The density g. It is at least kDefensive.
-  float density(const Emission& e) const;
+  float density(const EmissionSample& e) const;
 
  private:
   struct Cell {
@@ -75,8 +75,8 @@ struct PilotContribution {
   double target = 0.0, proxy = 0.0;
 };
 // Follows a photon, with further random numbers. `proxy` need not be set unless `withProxy`.
-using PilotEstimator =
-    std::function<PilotContribution(const Emission&, const PhotonStart&, Rng&, bool withProxy)>;
+using PilotEstimator = std::function<PilotContribution(const EmissionSample&, const PhotonStart&,
+                                                       Rng&, bool withProxy)>;
 
 // Shares of the photons whose contribution is not zero, 0..1.
 struct UsefulPhotons {

@@ -5,7 +5,7 @@
 
 #include "core/cdf.h"
 #include "core/prefetch.h"
-#include "transport/alpha_test.h"
+#include "transport/alpha_mask.h"
 #include "transport/light_shape.h"
 #include "transport/lights.h"
 
@@ -25,7 +25,7 @@ LightSet::EmitterPoint LightSet::samplePointOn(const Light& light, float u, floa
     density = densityOver(light, i, drawn.density);
   }
   const Material& m = scene_.materials[light.material];
-  const bool there = density > 0.0f && (!m.masked() || isThere(scene_, t, b.u, b.v));
+  const bool there = density > 0.0f && (!m.masked() || passesAlphaTest(scene_, t, b.u, b.v));
   return {(1.0f - b.u - b.v) * p0 + b.u * p1 + b.v * p2, normalize(cross(p1 - p0, p2 - p0)),
           there ? emissionOn(m, t, b) : Vec3(), there ? density : 1.0f};
 }

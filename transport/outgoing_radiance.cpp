@@ -40,7 +40,7 @@ unsigned addOutgoingRadiance(const Accelerator& accel, const LightSet& lights, c
          length.directOnly ? LightGroupSink{} : groups.indirect.times(throughput)});
     sum += throughput * vertex.emissionFirst;
     if (length.directOnly) return bounce + 1;
-    indirect += throughput * vertex.emissionLater;
+    indirect += throughput * vertex.directLater;
     if (bounce == length.maxBounces || !vertex.rough) return bounce + 1;
     throughput *= vertex.throughput;
   }

@@ -34,7 +34,7 @@ class PhotonWalk {
   const PhotonFate& fate() const { return fate_; }
   // Whether its first scattering was by a delta lobe. If no ray can hit the light, no path from the
   // camera finds this contribution.
-  bool firstScatteringIsDelta() const { return beganAtPerfectMirror_; }
+  bool firstScatteringIsDelta() const { return firstScatteringIsDelta_; }
   Rng& rng() { return rng_; }
   // One of several photons that replace this one, each with a share of its flux. The fate of each
   // includes the path so far.
@@ -82,7 +82,7 @@ class PhotonWalk {
     if (last ||
         !sampleNextRay(accel, bsdf, lobes.group, TransportMode::Importance, rng_, sample, next))
       return;
-    if (first) beganAtPerfectMirror_ = lobes.specular() && sample.pdf == 0.0f;
+    if (first) firstScatteringIsDelta_ = lobes.specular() && sample.pdf == 0.0f;
     const Vec3 onward = flux_ * sample.weight * (1.0f / (lobes.probability * survive));
     if (!isFinite(onward)) {
       fate_.finite = false;
@@ -99,7 +99,7 @@ class PhotonWalk {
   Ray next_;
   Vec3 flux_;
   unsigned maxBounces_ = 0, rough_ = 0, specular_ = 0;
-  bool goesOn_ = false, beganAtPerfectMirror_ = false;
+  bool goesOn_ = false, firstScatteringIsDelta_ = false;
   PhotonFate fate_;
 };
 

@@ -13,7 +13,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "transport/alpha_test.h"
+#include "transport/alpha_mask.h"
 #include "transport/embree.h"
 
 namespace bnvpl {
@@ -40,8 +40,8 @@ inline void rejectCutAway(const RTCFilterFunctionNArguments* args) {
   for (unsigned i = 0; i < args->N; ++i) {
     if (args->valid[i] == 0) continue;
     const uint32_t triangle = of.begin + RTCHitN_primID(args->hit, args->N, i);
-    if (!isThere(*of.scene, triangle, RTCHitN_u(args->hit, args->N, i),
-                 RTCHitN_v(args->hit, args->N, i)))
+    if (!passesAlphaTest(*of.scene, triangle, RTCHitN_u(args->hit, args->N, i),
+                         RTCHitN_v(args->hit, args->N, i)))
       args->valid[i] = 0;
   }
 }
@@ -93,7 +93,7 @@ void keepExact(const RTCFilterFunctionNArguments* args) {
   const bool nearer = hit.distance >= 0.0f && hit.distance <= query.reach &&
                       place(hit, hit.distance) < place(query, query.reach);
   const auto& of = *static_cast<const FilteredTriangles*>(args->geometryUserPtr);
-  if (!nearer || (kMasked && !isThere(*of.scene, hit.triangle, hit.u, hit.v))) {
+  if (!nearer || (kMasked && !passesAlphaTest(*of.scene, hit.triangle, hit.u, hit.v))) {
     args->valid[0] = 0;
     return;
   }
@@ -112,7 +112,7 @@ void hideExact(const RTCFilterFunctionNArguments* args) {
     if (args->valid[i] == 0) continue;
     const ExactHit hit = exactHit(args, i);
     const bool met = hit.distance >= 0.0f && hit.distance <= query.reach &&
-                     (!kMasked || isThere(*of.scene, hit.triangle, hit.u, hit.v));
+                     (!kMasked || passesAlphaTest(*of.scene, hit.triangle, hit.u, hit.v));
     if (!met) args->valid[i] = 0;
   }
 }

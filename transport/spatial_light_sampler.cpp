@@ -53,7 +53,7 @@ SpatialLightSampler::SpatialLightSampler(const Accelerator& accel, const LightSe
     return facingOf(normals[a]) < facingOf(normals[b]);
   });
   const std::vector<Group> groups = groupsOf(order, normals);
-  const auto phase = progress.before("light visibility, groups of VPLs", groups.size());
+  const auto phase = progress.beginPhase("light visibility, groups of VPLs", groups.size());
   std::vector<StrataValues> found(groups.size());
   parallelFor(groups.size(), 1, [&](size_t g) {
     std::vector<SurfacePoint> at;

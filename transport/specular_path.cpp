@@ -21,19 +21,20 @@ SpecularPath followSpecularPath(const Accelerator& accel, const LightSet& lights
   LearnedStrata strata;  // those of the last specular vertex
   end.hit = first;
   end.throughput = Vec3{1.0f};
+  PhotonMis photons = start.photons;  // with the rays that passed the specular vertices so far
   Arrival arrival = start;
-  if (!(start.photons.emissionBalance > 0.0f)) arrival.photons = {};
+  if (!(start.photons.misRatio > 0.0f)) arrival.photons = {};
   while (true) {
     const bool straight = end.specularBounces == 0;
-    Vec3& met = straight ? end.emissionFirst : end.emissionLater;
-    arrival.groups = (straight ? specularLights.emissionFirst : specularLights.emissionLater)
+    Vec3& found = straight ? end.emissionFirst : end.directLater;
+    arrival.groups = (straight ? specularLights.emissionFirst : specularLights.directLater)
                          .times(end.throughput);
     if (end.hit.triangle == kNone) {
-      met += end.throughput * emissionAtInfinity(lights, direction, arrival);
+      found += end.throughput * emissionAtInfinity(lights, direction, arrival);
       return end;
     }
     if (end.specularBounces == 0) end.firstDistance = end.hit.distance;
-    met += end.throughput * emissionHit(lights, end.hit, arrival);
+    found += end.throughput * emissionHit(lights, end.hit, arrival);
 
     if (const auto rough = roughEverywhere(accel.scene().materials[end.hit.material])) {
       rng.next();  // chooseLobes() would consume it
@@ -49,17 +50,17 @@ SpecularPath followSpecularPath(const Accelerator& accel, const LightSet& lights
       return end;
     }
     if (++end.specularBounces > kMaxSpecular) return end;
+    photons = photons.beyond(bsdf, end.specularBounces == 1);
     if (!bsdf.specularIsDelta()) {
       end.hasNonDelta = true;
       strata = end.specularBounces == 1 && specularLights.first ? *specularLights.first
                : specularLights.others ? specularLights.others->at(end.hit.position, end.hit.ng)
                                        : LearnedStrata{};
-      end.emissionLater +=
-          end.throughput * directLight(accel, lights, Reflected{bsdf, LobeGroup::Specular},
-                                       {learnedBy(strata), LightChoice::One, start.photons,
-                                        specularLights.emissionLater.times(end.throughput)},
-                                       BsdfRays{bsdf, 1.0f, LobeGroup::Specular},
-                                       LightNumbers(rng));
+      end.directLater += end.throughput *
+                         directLight(accel, lights, Reflected{bsdf, LobeGroup::Specular},
+                                     {learnedBy(strata), LightChoice::One, photons,
+                                      specularLights.directLater.times(end.throughput)},
+                                     BsdfRays{bsdf, 1.0f, LobeGroup::Specular}, LightNumbers(rng));
     }
     BsdfSample sample;
     Ray next;
@@ -67,7 +68,7 @@ SpecularPath followSpecularPath(const Accelerator& accel, const LightSet& lights
                        next))
       return end;
     end.throughput *= sample.weight;
-    arrival = {sample.pdf, end.hit.position, LightChoice::One, learnedBy(strata), start.photons};
+    arrival = {sample.pdf, end.hit.position, LightChoice::One, learnedBy(strata), photons};
     direction = next.direction;
     accel.closestHit(next.origin, direction, end.hit);
   }

@@ -13,7 +13,7 @@ class SpatialLightSampler;
 struct SpecularLightSampling {
   const LearnedStrata* first = nullptr;         // for the first specular vertex
   const SpatialLightSampler* others = nullptr;  // for the others, and for the first without `first`
-  LightGroupSink emissionFirst = {}, emissionLater = {};  // receive the members of SpecularPath
+  LightGroupSink emissionFirst = {}, directLater = {};  // receive the members of SpecularPath
 };
 
 struct SpecularPath {
@@ -23,12 +23,12 @@ struct SpecularPath {
   unsigned specularBounces = 0;  // number of specular vertices
   bool hasNonDelta = false;      // whether one of them has a near-specular rather than a delta lobe
   Vec3 emissionFirst;            // emission hit by the first segment
-  Vec3 emissionLater;            // emission hit later, and light sampled at near-specular vertices
+  Vec3 directLater;              // emission hit later, and light sampled at near-specular vertices
   float firstDistance = INFINITY;  // distance of the first hit along the ray
 };
 
 // `arrival` describes the first segment; its `photons` hold for the segments behind specular
-// vertices, and with an emissionBalance for the first, too.
+// vertices, and with an misRatio for the first, too.
 SpecularPath followSpecularPath(const Accelerator& accel, const LightSet& lights, Vec3 origin,
                                 Vec3 direction, const Arrival& arrival, Rng& rng,
                                 const SpecularLightSampling& specularLights = {});

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "transport/alpha_test.h"
+#include "transport/alpha_mask.h"
 
 namespace bnvpl {
 
@@ -292,7 +292,7 @@ void TexturedEmission::addPoint(uint32_t triangle, double b1, double b2, double 
     const double b0 = 1.0 - b1 - b2;
     const auto u = float(b0 * (*uv)[0][0] + b1 * (*uv)[1][0] + b2 * (*uv)[2][0]),
                v = float(b0 * (*uv)[0][1] + b1 * (*uv)[1][1] + b2 * (*uv)[2][1]);
-    there = !material_.masked() || isThere(scene_, material_, u, v);
+    there = !material_.masked() || passesAlphaTest(scene_, material_, u, v);
     if (material_.emissionTexture != kNone) {
       const std::span<const Texture> textures = coarse_.empty() ? scene_.textures : coarse_;
       emission = emission *

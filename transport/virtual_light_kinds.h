@@ -39,9 +39,9 @@ struct LambertEmission {
   // `cosine` is that of the direction with the axis of the cone, which has the given half angle.
   template <typename F>
   static F maxEmitted(F cosine, F cosHalfAngle, F sinHalfAngle) {
-    const F zero = everyLane<F>(0.0f);
+    const F zero = broadcast<F>(0.0f);
     const F nearest = cosSubClamped(cosine, cosHalfAngle, sinHalfAngle);
-    return selectAtLeast(zero, cosHalfAngle, everyLane<F>(1.0f), larger(nearest, zero));
+    return selectAtLeast(zero, cosHalfAngle, broadcast<F>(1.0f), larger(nearest, zero));
   }
   // `cosine` is the least of the direction with the axis of the cone.
   static float minEmitted(float cosine, float cosHalfAngle, float sinHalfAngle) {
@@ -90,7 +90,7 @@ struct YukselLight : LambertEmission {
   static F boundedDistance2(F d2, F size2) {
     const F slant2 = d2 + size2;
     // The rounding of the root could lead below d2.
-    return larger(everyLane<F>(0.5f) * (slant2 + squareRoot(d2 * slant2)), d2);
+    return larger(broadcast<F>(0.5f) * (slant2 + squareRoot(d2 * slant2)), d2);
   }
   static float removed(float distanceOverSize) {
     if (!(distanceOverSize > 0.0f)) return 1.0f;
@@ -111,15 +111,15 @@ struct SphericalLight : LambertEmission {
   static constexpr bool fromCentre = false;
   template <typename F>
   static F boundedDistance2(F d2, F size2) {
-    const F outside2 = larger(d2, size2), one = everyLane<F>(1.0f);
+    const F outside2 = larger(d2, size2), one = broadcast<F>(1.0f);
     const F cos2 = one - size2 / outside2, cosine = squareRoot(cos2);
-    return larger(everyLane<F>(1.5f) * outside2 * (one + cosine) / (one + cosine + cos2), d2);
+    return larger(broadcast<F>(1.5f) * outside2 * (one + cosine) / (one + cosine + cos2), d2);
   }
   // Replaces d^2 in bounds. `box2`: squared distance to a box that holds the sphere.
   template <typename F>
   static F minDistance2(F box2, F size2) {
     const F d = squareRoot(box2) + squareRoot(size2), d2 = d * d;
-    return everyLane<F>(0.5f) * (d2 + d * squareRoot(larger(d2 - size2, everyLane<F>(0.0f))));
+    return broadcast<F>(0.5f) * (d2 + d * squareRoot(larger(d2 - size2, broadcast<F>(0.0f))));
   }
   static float removed(float) { return 0.0f; }
 };

@@ -13,17 +13,23 @@ struct LobeChoice {
   float probability;
   bool specular() const { return group == LobeGroup::Specular; }
 };
-// `roughImportance` scales the probability of the rough group before normalisation, 0..1.
+// Probability of the specular group. `roughImportance` scales that of the rough group before
+// normalisation, 0..1.
+inline float specularShare(const Bsdf& bsdf, float roughImportance) {
+  const float specular = bsdf.specularProbability();
+  return roughImportance < 1.0f && specular > 0.0f
+             ? specular / (specular + (1.0f - specular) * roughImportance)
+             : specular;
+}
 inline LobeChoice chooseLobes(const Bsdf& bsdf, Rng& rng, float roughImportance = 1.0f) {
-  float specular = bsdf.specularProbability();
-  if (roughImportance < 1.0f && specular > 0.0f)
-    specular /= specular + (1.0f - specular) * roughImportance;
+  const float specular = specularShare(bsdf, roughImportance);
   return rng.next() < specular ? LobeChoice{LobeGroup::Specular, specular}
                                : LobeChoice{LobeGroup::Rough, 1.0f - specular};
 }
 
 // The ray from a vertex in a sampled direction.
-inline Ray rayOn(const Accelerator& accel, const SurfacePoint& vertex, const BsdfSample& sample) {
+inline Ray spawnRay(const Accelerator& accel, const SurfacePoint& vertex,
+                    const BsdfSample& sample) {
   return {accel.offsetOrigin(vertex.position, sample.side), sample.wi};
 }
 
@@ -32,7 +38,7 @@ inline Ray rayOn(const Accelerator& accel, const SurfacePoint& vertex, const Bsd
 inline bool sampleNextRay(const Accelerator& accel, const Bsdf& bsdf, LobeGroup group,
                           TransportMode transport, Rng& rng, BsdfSample& sample, Ray& next) {
   if (!bsdf.sample(group, transport, rng, sample)) return false;
-  next = rayOn(accel, bsdf.point(), sample);
+  next = spawnRay(accel, bsdf.point(), sample);
   return true;
 }
 

@@ -36,7 +36,7 @@ def pack(path: Path) -> tuple[dict[str, int], str]:
     """Sizes for the page, and the data as base64.
 
     For each pixel the rows (u32) and their shares (f16), strongest first, filled up to equal
-    length; for each row its place on the film (NaN outside) and the light that it brings.
+    length; for each row its place on the film (NaN outside) and its contribution.
     """
     found = read(path)
     try:

@@ -65,7 +65,7 @@ class ExplorerTest(PageCase):
     def test_a_vpl_shows_what_it_lights(self) -> None:
         right = self.colour(0.9, 0.9)
         self.click(0.25, 0.5)
-        self.assertIn("VPL 0 brings 12.5 % of the VPLs' light in the picture", self.text())
+        self.assertIn("VPL 0 contributes 12.5 % of the VPLs' light in the picture", self.text())
         self.assertIn("strongest of 3 of 12 pixels, with up to 50.0 %", self.text())
         red, green, blue = self.colour(0.1, 0.9)
         self.assertGreater(red, 180)  # yellow: the most
@@ -79,7 +79,7 @@ class ExplorerTest(PageCase):
         self.click(0.1, 0.1)
         buttons = self.explorer.find_elements("css selector", "tbody button")
         buttons[2].click()
-        self.assertIn("VPL 2 brings 12.5 %", self.text())
+        self.assertIn("VPL 2 contributes 12.5 %", self.text())
         self.assertIn("strongest of 11 of 12 pixels", self.text())
         self.explorer.find_element("css selector", ".explorer-side > button").click()
         self.assertIn("3 VPLs with 1 in sight", self.text())
@@ -88,7 +88,7 @@ class ExplorerTest(PageCase):
         self.js("arguments[0].focus({preventScroll: true})", self.picture)
         keys = ActionChains(self.driver)
         keys.send_keys(*[Keys.ARROW_RIGHT] * 9, *[Keys.ARROW_DOWN] * 9).perform()
-        self.assertIn("Pixel (3, 2) of 4×3: 1 VPL brings 75.0 %", self.text())
+        self.assertIn("Pixel (3, 2) of 4×3: 1 VPL contributes 75.0 %", self.text())
         ActionChains(self.driver).send_keys(Keys.ESCAPE).perform()
         self.assertIn("3 VPLs", self.text())
 

@@ -87,7 +87,8 @@ VplHeader readHeader(InputFile& in) {
     in.fail(offsetof(VplHeader, reserved), "reserved field is not zero");
   }
   if (!isMeasure(header.rMax)) in.fail(offsetof(VplHeader, rMax), "r_max is not a length");
-  if (!isMeasure(header.reach)) in.fail(offsetof(VplHeader, reach), "reach is not a length");
+  if (!isMeasure(header.reach))
+    in.fail(offsetof(VplHeader, reach), "reach is not zero or a positive number");
   if (!isMeasure(header.areaEstimate)) {
     in.fail(offsetof(VplHeader, areaEstimate), "area estimate is not an area");
   }

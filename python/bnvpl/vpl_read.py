@@ -73,7 +73,7 @@ def _check_fields(file: _File, header: Header) -> None:
         file.fail(at.RESERVED_AT, "reserved field is not zero")
     for byte, value, problem in (
         (at.R_MAX_AT, header.r_max, "r_max is not a length"),
-        (at.REACH_AT, header.reach, "reach is not a length"),
+        (at.REACH_AT, header.reach, "reach is not zero or a positive number"),
         (at.AREA_AT, header.area, "area estimate is not an area"),
     ):
         if not 0 <= value < np.inf:

@@ -133,7 +133,8 @@ TEST_F(ToToml, KeepsTexturesMadeOfTextures) {
 
 TEST_F(ToToml, KeepsLampImages) {
   writePicture("t.png");
-  Image floats{.width = 1, .height = 1};
+  Image floats;
+  floats.width = floats.height = 1;
   for (const char* name : {"R", "G", "B", "A"}) floats.add(name)[0] = 40.0f;
   writeExr(at("t.exr"), floats, ExrPixelType::Float);
   for (const std::string file : {"t.png", "t.exr"}) {
@@ -159,9 +160,8 @@ TEST_F(ToToml, KeepsEveryModel) {
       {"\"coatedconductor\" \"float interface.roughness\" .2", "coated_conductor"},
   };
   for (const auto& [text, model] : kModels) {
-    SCOPED_TRACE(text);
     const Scene copy = copyOfPbrt(std::string("Material ") + text + "\n" + kSquare);
-    EXPECT_EQ(nameOf(copy.materials.at(copy.triangles[0].material).model), model);
+    EXPECT_EQ(nameOf(copy.materials.at(copy.triangles[0].material).model), model) << text;
   }
 }
 

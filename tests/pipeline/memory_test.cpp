@@ -66,5 +66,13 @@ TEST_F(Memory, ShardsLeaveNothingBehindInTheMerge) {
   expectSamePeak("vpl-merge", shards(2), shards(60));
 }
 
+// Cells as small as these radii would each take a node of OpenVDB's tree, 34 kB, for one candidate.
+TEST_F(Memory, TinyRadiiTakeNoMore) {
+  succeed("vpl-place", scene_ + " -n 20k --quiet -o " + path("many.vpl"));
+  const std::string command = path("many.vpl") + " -o " + path("few.vpl") + " --count 1000 --area ";
+  EXPECT_LT(peakMiB("vpl-eliminate", command + "1e-9") - peakMiB("vpl-eliminate", command + "1"),
+            60.0);
+}
+
 }  // namespace
 }  // namespace bnvpl

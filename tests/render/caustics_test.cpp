@@ -193,10 +193,11 @@ TEST(Caustics, EmittersWithTooFewPhotonsAreLeftToRays) {
       world.scene.camera.position,
       cameraDirection(world.scene.camera, world.scene.film, 0.5f, 0.5f), seen));
   const auto share = [&](uint64_t photons, bool left) {
-    const Caustics caustics(world.accel, world.lights, {}, photons, 8.0f, 0, 3, 0, {});
+    const Caustics caustics(world.accel, world.lights, {}, photons, {.ofPixel = 8.0f}, 0, 3, 0, {});
     EXPECT_GT(caustics.stats().lamps, 0u);
     EXPECT_EQ(caustics.stats().sparseLamps == caustics.stats().lamps, left) << photons;
-    return caustics.photonMis(seen, world.scene.camera.position).rayWeight(lamp, {0, 1, 0}, 1.0f);
+    return caustics.photonMis(seen, world.scene.camera.position)
+        .rayWeight(lamp, {0, 1, 0}, 1.0f, 0.0f);
   };
   EXPECT_EQ(share(16, true), 1.0f);
   EXPECT_LT(share(400000, false), 1.0f);

@@ -5,7 +5,7 @@
 #include "tests/support/gather_checks.h"
 #include "tests/support/gather_of.h"
 #include "tests/support/pipeline.h"
-#include "tools/render/gather/shadow_test.h"
+#include "tools/render/gather/single_vpl.h"
 
 namespace bnvpl::test {
 namespace {
@@ -50,9 +50,9 @@ double deviationOfAnyVpl(const World& world, const VplLights& vpls, const Bsdf& 
   const ShadowTest one(world.accel, vpls, bsdf);
   double sum = 0.0, squares = 0.0;
   for (size_t i = 0; i < vpls.size(); ++i) {
-    const double brings = mean(one.of(i).radiance);
-    sum += brings;
-    squares += brings * brings;
+    const double contribution = mean(one.of(i).radiance);
+    sum += contribution;
+    squares += contribution * contribution;
   }
   return std::sqrt(std::max(0.0, static_cast<double>(vpls.size()) * squares / (sum * sum) - 1.0));
 }

@@ -25,7 +25,7 @@ struct Film {
                   const WorkControls& controls = {}) const {
     Made made;
     const FilmOptions options{.seed = seed, .layers = parseLayers("error,samples", true, true)};
-    const Budget budget{.passes = passes, .adaptive = adaptive};
+    const PassBudget budget{.passes = passes, .adaptive = adaptive};
     made.image =
         renderPasses(scene, integrator, options, budget, made.stats, made.passes, {}, controls);
     return made;
@@ -266,7 +266,7 @@ TEST(Passes, CountThePhotonsOfEachPass) {
 TEST(Passes, EndByTimeErrorOrNumber) {
   const Film film(32, 32);
   const auto noise = seen([](uint32_t, float, float own) { return own; });
-  const auto ended = [&](const Budget& budget) {
+  const auto ended = [&](const PassBudget& budget) {
     Made m;
     renderPasses(film.scene, noise, {}, budget, m.stats, m.passes);
     return m.passes;

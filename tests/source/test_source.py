@@ -24,7 +24,7 @@ RENDER = [
         "sample.h",
         "pixel_filter.h",
         "pixel_filter.cpp",
-        "camera_vertex.h",
+        "camera_path.h",
         "tile_dimensions.h",
         "stage_options.h",
     ],

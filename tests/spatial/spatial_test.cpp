@@ -8,10 +8,10 @@
 #include "spatial/all_neighbours.h"
 #include "spatial/cell_lists.h"
 #include "spatial/kd_tree.h"
-#include "spatial/local_density.h"
 #include "spatial/morton_order.h"
 #include "spatial/reach_grid.h"
 #include "spatial/region_grid.h"
+#include "spatial/represented_area.h"
 #include "tests/eliminate/clouds.h"
 
 namespace bnvpl {
@@ -161,10 +161,10 @@ TEST(Spatial, DisksThatReachAreAllFound) {
 
 TEST(Spatial, SharesAreTheSameWithTheShortQuery) {
   const Cloud cloud = cube(3000, 1.0f, 3);
-  const std::vector<float> all = surfaceShares(cloud.position, cloud.normal, 20);
+  const std::vector<float> all = representedAreas(cloud.position, cloud.normal, 20);
   const std::vector<uint32_t> rows{0, 17, 2999};
   const KdTree tree(cloud.position);
-  const std::vector<float> some = surfaceShares(cloud.position, cloud.normal, 20, tree, rows);
+  const std::vector<float> some = representedAreas(cloud.position, cloud.normal, 20, tree, rows);
   for (size_t i = 0; i < rows.size(); ++i) EXPECT_EQ(some[i], all[rows[i]]);
 }
 
@@ -174,13 +174,14 @@ TEST(Spatial, SharesOfOddPoints) {
   Cloud cloud = plane(1000, 1.0f, 1.0f, 4);
   cloud.add({0.5f, 0.5f, 0.0f}, {1, 0, 0});
   for (int i = 0; i < 100; ++i) cloud.add({0.2f, 0.2f, 0.0f}, {0, 0, 1});
-  const std::vector<float> share = surfaceShares(cloud.position, cloud.normal, 20);
+  const std::vector<float> share = representedAreas(cloud.position, cloud.normal, 20);
   EXPECT_GT(share[1000], 0.0003f);
   EXPECT_LT(share[1000], 0.003f);
   EXPECT_GT(share[1050], 0.0f);
   EXPECT_LT(share[1050], 1e-9f);
-  EXPECT_EQ(surfaceShares(std::vector<Vec3>(5, Vec3(1.0f)), std::vector<Vec3>(5, Vec3(0, 0, 1)), 3),
-            std::vector<float>(5, 3.0f));  // all coincide: the squared distance from the origin
+  EXPECT_EQ(
+      representedAreas(std::vector<Vec3>(5, Vec3(1.0f)), std::vector<Vec3>(5, Vec3(0, 0, 1)), 3),
+      std::vector<float>(5, 3.0f));  // all coincide: the squared distance from the origin
 }
 
 TEST(Spatial, MortonOrderIsAPermutation) {

@@ -47,7 +47,7 @@ struct Plain {
   }
   LearnedEmission learned(uint64_t key = 1) const {
     return learnEmission(*lights, kPilot, key,
-                         [&](const Emission&, const PhotonStart& start, Rng&, bool) {
+                         [&](const EmissionSample&, const PhotonStart& start, Rng&, bool) {
                            return PilotContribution{onSquare(start), onSquare(start, 10.0f)};
                          },
                          {});
@@ -62,7 +62,7 @@ std::pair<double, double> fluxBy(const Plain& plain, const EmissionGuide& guide,
   double sum = 0.0, squares = 0.0;
   for (uint64_t i = 0; i < count; ++i) {
     Rng rng(77, i);
-    const Emission e = guide.draw((double(i) + double{rng.next()}) / double(count), rng);
+    const EmissionSample e = guide.draw((double(i) + double{rng.next()}) / double(count), rng);
     const double f = plain.onSquare(plain.lights->emit(e.light, e.at)) /
                      double{plain.lights->pickProbability(e.light) * guide.density(e)};
     sum += f, squares += f * f;
@@ -126,7 +126,7 @@ TEST(EmissionGuide, IsOneByPowerWhereAllPhotonsAreUseful) {
   const Plain plain({sunLight(), skyLight()});
   const LearnedEmission learned =
       learnEmission(*plain.lights, kPilot, 1,
-                    [](const Emission&, const PhotonStart& s, Rng&, bool) {
+                    [](const EmissionSample&, const PhotonStart& s, Rng&, bool) {
                       return PilotContribution{double{mean(s.flux)}};
                     },
                     {});
@@ -139,7 +139,8 @@ TEST(EmissionGuide, IsOneByPowerWhereNoPhotonIsUseful) {
   const Plain plain({sunLight()});
   const LearnedEmission learned = learnEmission(
       *plain.lights, kPilot, 1,
-      [](const Emission&, const PhotonStart&, Rng&, bool) { return PilotContribution{}; }, {});
+      [](const EmissionSample&, const PhotonStart&, Rng&, bool) { return PilotContribution{}; },
+      {});
   EXPECT_FALSE(learned.guide.guides());
   EXPECT_EQ(learned.useful.guided, 0.0);
 }

@@ -13,7 +13,7 @@
 namespace bnvpl {
 namespace {
 
-constexpr double kBytesPerCandidate = 120;  // measured: 140 to 150
+constexpr double kBytesPerCandidate = 120;  // a lower bound; measured: 140 to 150
 
 // The scene, for methods that need it.
 struct World {
@@ -41,7 +41,7 @@ int runEliminate(const StageRequest& request, const fs::path& input, const ToolO
   const bool lit = eliminateMethod(options).takes == VplStage::Lit;
   run.used.writes("-o", request.output, {lit ? OutputKind::Lit : OutputKind::Eliminated});
   run.checkFiles();
-  if (!run.estimating())
+  if (!run.predictsCost())
     requireMemoryFor(input, kBytesPerCandidate, "place fewer with vpl-place -n");
   const VplTable candidates = readVpl(input, eliminateMethod(options).takes);
   std::optional<World> world;
@@ -49,8 +49,8 @@ int runEliminate(const StageRequest& request, const fs::path& input, const ToolO
     world.emplace(request.scene, tool.processor, input, candidates.sceneHash);
   const Accelerator* accel = world ? &world->accel : nullptr;
   const LightSet* lights = world ? &world->lights : nullptr;
-  if (run.estimating()) {
-    return run.tell("candidates,", [&](const ProgressFn& progress) {
+  if (run.predictsCost()) {
+    return run.predictCost("candidates,", [&](const ProgressFn& progress) {
       return costOfEliminating(candidates, options, accel, lights, progress);
     });
   }
@@ -69,7 +69,7 @@ int runEliminate(const StageRequest& request, const fs::path& input, const ToolO
     writeVpl(task.files.add(request.output), kept);
     reportEliminated(kept, candidates.size(), task.summary);
   };
-  return run.make({record, "candidates", candidates.size(), read, whole});
+  return run.execute({record, "candidates", candidates.size(), read, whole});
 }
 
 }  // namespace

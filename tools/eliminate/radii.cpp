@@ -2,26 +2,25 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <sstream>
 
 #include "core/errors.h"
 #include "core/parallel.h"
 #include "core/random.h"
 #include "core/random_streams.h"
-#include "spatial/local_density.h"
+#include "spatial/packed_disks.h"
+#include "spatial/represented_area.h"
 
 namespace bnvpl {
 namespace {
 
-constexpr double kTwoSqrt3 = 2.0 * std::numbers::sqrt3;
 // r_max depends on the square root of the area, so the error of about 1 % that this many rows have
 // does not matter.
 constexpr size_t kMaxAreaRows = 16384;
 constexpr size_t kMaxAreaCandidates = size_t{1} << 18;
 
-std::vector<uint32_t> evenlySpacedRows(size_t count, size_t most) {
-  std::vector<uint32_t> rows(std::min(count, most));
+std::vector<uint32_t> evenlySpacedRows(size_t count, size_t max) {
+  std::vector<uint32_t> rows(std::min(count, max));
   for (size_t i = 0; i < rows.size(); ++i) rows[i] = static_cast<uint32_t>(i * count / rows.size());
   return rows;
 }
@@ -34,8 +33,8 @@ double areaOf(std::span<const Vec3> position, std::span<const Vec3> normal, unsi
               const ProgressFn& progress) {
   const std::vector<uint32_t> rows = evenlySpacedRows(position.size(), kMaxAreaRows);
   const KdTree tree(position);
-  const auto phase = progress.before("surface area, candidates", rows.size());
-  return sumOf(surfaceShares(position, normal, k, tree, rows, progress)) *
+  const auto phase = progress.beginPhase("surface area, candidates", rows.size());
+  return sumOf(representedAreas(position, normal, k, tree, rows, progress)) *
          static_cast<double>(position.size()) / static_cast<double>(rows.size());
 }
 
@@ -72,8 +71,6 @@ void requireUsable(const std::vector<float>& radii) {
 
 }  // namespace
 
-double packedDiskRadius(double area, double count) { return std::sqrt(area / (kTwoSqrt3 * count)); }
-
 CandidateRadii candidateRadii(std::span<const Vec3> position, std::span<const Vec3> normal,
                               double count, const Values& options, const ProgressFn& progress) {
   const auto candidates = static_cast<double>(position.size());
@@ -87,17 +84,16 @@ CandidateRadii candidateRadii(std::span<const Vec3> position, std::span<const Ve
     requireUsable(result.radius);
     return result;
   }
-  {
-    const auto phase = progress.before("radii, candidates", position.size());
-    result.radius = surfaceShares(position, normal, neighbours(), progress);
-  }
-  const double estimate = sumOf(result.radius);
+  const auto phase = progress.beginPhase("radii, candidates", position.size());
+  const std::vector<float> areas = representedAreas(position, normal, neighbours(), progress);
+  const double estimate = sumOf(areas);
   result.area = given > 0.0 ? given : estimate;
   result.rMax = packedDiskRadius(result.area, count);
   // VPLs per unit of area are N ((1 - w) / (M share) + w / A), which integrates to N.
-  const double shareScale = result.area / estimate, w = options[kUniformShareOption];
+  const double scale = result.area / estimate, w = options[kUniformShareOption];
+  result.radius.resize(position.size());
   parallelFor(position.size(), 4096, [&](size_t i) {
-    const double share = static_cast<double>(result.radius[i]) * shareScale;
+    const double share = static_cast<double>(areas[i]) * scale;
     const double density = (1.0 - w) / (candidates * share) + w / result.area;
     result.radius[i] = static_cast<float>(packedDiskRadius(1.0 / density, count));
   });

@@ -7,7 +7,7 @@
 
 #include "core/progress.h"
 #include "core/vec3.h"
-#include "spatial/local_density.h"
+#include "spatial/represented_area.h"
 #include "tools/common/options/option.h"
 
 namespace bnvpl {
@@ -32,16 +32,13 @@ inline constexpr auto kNeighboursOption =
 inline constexpr auto kRadiusOptions =
     optionTable(kDensityOption, kUniformShareOption, kAreaOption, kNeighboursOption);
 
-static_assert(kShareNeighbours == 20, "the default of --neighbours");
+static_assert(kAreaNeighbours == 20, "the default of --neighbours");
 
 struct CandidateRadii {
   std::vector<float> radius;  // one per candidate, world units, positive
   double rMax = 0.0;
   double area = 0.0;
 };
-
-// Largest radius of `count` equal disks packed on `area`: sqrt(A / (2 sqrt(3) N)).
-double packedDiskRadius(double area, double count);
 
 // Radii for keeping `count` of the candidates, as kRadiusOptions ask for. Uniform density: r_max
 // for every candidate. Local density: radii follow a mixture of a constant density and the

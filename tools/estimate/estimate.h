@@ -19,7 +19,7 @@ namespace bnvpl {
 struct EnergyAccount {
   double emitted = 0, escaped = 0, absorbed = 0;
   double reflected = 0;  // flux that leaves the rough hits
-  double deposited = 0;  // flux deposited in VPLs
+  double deposited = 0;  // flux of the hits that found a VPL, before MIS weights
   double outside = 0;    // no VPL reaches the hit: it lies outside the region that lights the view
   double incompatible = 0;  // VPLs reach the hit, but none on a compatible surface
   double hidden = 0;        // some are on a compatible surface, but none is in sight

@@ -23,7 +23,7 @@ int runEstimate(const StageRequest& request, const fs::path& input, const ToolOp
   run.used.reads("scene", request.scene.file).reads("vpls", input);
   run.used.writes("-o", request.output, {request.shard ? OutputKind::Shard : OutputKind::Lit});
   run.checkFiles();
-  if (!run.estimating()) {
+  if (!run.predictsCost()) {
     requireMemoryFor(input, kBytesPerEstimated + bytesPerVplAndThread(options) * threadsInUse(),
                      "keep fewer with vpl-eliminate -n, or lower --threads");
   }
@@ -39,8 +39,8 @@ int runEstimate(const StageRequest& request, const fs::path& input, const ToolOp
   const auto result = [&](const ProgressFn& progress, const WorkControls& controls) {
     return estimate(vpls, accel, lights, options, progress, controls);
   };
-  if (run.estimating()) {
-    return run.tell(std::string(work.unit), [&](const ProgressFn& progress) {
+  if (run.predictsCost()) {
+    return run.predictCost(std::string(work.unit), [&](const ProgressFn& progress) {
       CostTrial trial(cpuSecondsSoFar);
       return costOfUnits([&](const WorkControls& controls) { result(progress, controls); }, trial,
                          {.fewest = 64.0});
@@ -63,7 +63,7 @@ int runEstimate(const StageRequest& request, const fs::path& input, const ToolOp
   };
   std::vector<fs::path> read = scene.files;
   read.push_back(input);
-  return run.make({record, std::string(work.unit), work.count, read, whole, part});
+  return run.execute({record, std::string(work.unit), work.count, read, whole, part});
 }
 
 }  // namespace

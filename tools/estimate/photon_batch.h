@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "tools/estimate/photon_scatter.h"
+#include "tools/estimate/photon_deposits.h"
 #include "transport/photon_walk.h"
 
 namespace bnvpl {
@@ -12,9 +12,9 @@ namespace bnvpl {
 // Photons that advance together, one ray each per round, which hides the latency of memory.
 class PhotonBatch {
  public:
-  PhotonBatch(const Accelerator& accel, const PhotonScatter& scatter, const ScatterRule& rule)
+  PhotonBatch(const Accelerator& accel, const PhotonDeposits& deposits, const DepositRule& rule)
       : accel_(accel),
-        scatter_(scatter),
+        deposits_(deposits),
         rule_(rule),
         photons_(kSize),
         hittable_(kSize),
@@ -51,9 +51,9 @@ class PhotonBatch {
         photons_[i].advance(accel_, hits_[i], [&](const Bsdf& bsdf, Vec3 flux, bool firstBounce) {
           const Vec3 leaving = flux * bsdf.roughAlbedo();
           ++sums.hits;
-          scatter_.tally(sums, kReflected, leaving);
+          deposits_.tally(sums, kReflected, leaving);
           const bool onlyPhotons = !hittable_[i] && photons_[i].firstScatteringIsDelta();
-          rule_(scatter_,
+          rule_(deposits_,
                 {bsdf.point(), near_[i], leaving, firstBounce, onlyPhotons, density_[i], group_[i]},
                 photons_[i].rng(), sums);
         });
@@ -74,19 +74,19 @@ class PhotonBatch {
   // Finds the hits of the first `size` photons, and the VPLs near them.
   void intersect(size_t size) {
     accel_.closestHits({next_.data(), size}, hits_);
-    scatter_.coverage().lookUp(std::span(std::as_const(hits_)).first(size), near_);
+    deposits_.coverage().lookUp(std::span(std::as_const(hits_)).first(size), near_);
   }
   void finish(const PhotonWalk& photon, PhotonSums& sums) const {
     const PhotonFate& fate = photon.fate();
-    scatter_.tally(sums, kEscaped, fate.escaped);
-    scatter_.tally(sums, kAbsorbed, fate.absorbed);
+    deposits_.tally(sums, kEscaped, fate.escaped);
+    deposits_.tally(sums, kAbsorbed, fate.absorbed);
     sums.rays += fate.rays;
     sums.nonFinite += fate.finite ? 0 : 1;
   }
 
   const Accelerator& accel_;
-  const PhotonScatter& scatter_;
-  const ScatterRule& rule_;
+  const PhotonDeposits& deposits_;
+  const DepositRule& rule_;
   // One entry per photon: its walk, whether rays can hit its light, its light group, the density of
   // its start, its next ray, the hit, and VPLs near it.
   std::vector<PhotonWalk> photons_;

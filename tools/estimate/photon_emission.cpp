@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/random_streams.h"
-#include "tools/estimate/photon_scatter.h"
+#include "tools/estimate/photon_deposits.h"
 #include "transport/photon_walk.h"
 
 namespace bnvpl {
@@ -17,15 +17,15 @@ constexpr uint64_t kTrialPhotons = 1 << 16;  // limit for a cost trial (--estima
 constexpr double kMinFlux = 0.1;
 
 // Weights of the VPLs' variances: one over the flux, by photons that start in proportion to power.
-std::vector<double> weightsByFlux(const EstimateInputs& in, const PhotonScatter& scatter,
+std::vector<double> weightsByFlux(const EstimateInputs& in, const PhotonDeposits& deposits,
                                   const PhotonRun& run) {
-  const auto phase = in.progress.before("flux pilot, photons", run.shares.total());
+  const auto phase = in.progress.beginPhase("flux pilot, photons", run.shares.total());
   const PhotonSums sums =
-      tracePhotons({in.vpls, in.accel, in.lights, in.progress, {}}, run, scatterToOneInSight);
+      tracePhotons({in.vpls, in.accel, in.lights, in.progress, {}}, run, depositToOneInSight);
   std::vector<double> weights(in.vpls.size());
   double mean = 0.0;
   for (size_t i = 0; i < weights.size(); ++i) {
-    for (const int64_t flux : sums.vpl[i].flux) weights[i] += scatter.fixed().decode(flux);
+    for (const int64_t flux : sums.vpl[i].flux) weights[i] += deposits.fixed().decode(flux);
     mean += weights[i] / static_cast<double>(weights.size());
   }
   for (double& w : weights) w = mean > 0.0 ? 1.0 / (w + kMinFlux * mean) : 1.0;
@@ -44,13 +44,13 @@ LearnedEmission learnPhotonEmission(const EstimateInputs& in, const Values& opti
                              static_cast<double>(pilot) / static_cast<double>(sent));
   const uint64_t key = streamKey(options[kSeedOption], RandomStream::PhotonEmission);
   const PhotonShares shares(in.lights, std::max<uint64_t>(1, sent / kPilotPhotonsPerFluxPhoton));
-  const PhotonScatter scatter(in, options.real32(kRadiusOption), shares.total());
+  const PhotonDeposits deposits(in, options.real32(kRadiusOption), shares.total());
   const std::vector<double> weights =
-      weightsByFlux(in, scatter, {mix64(key), 0, maxBounces, shares, scatter});
-  const Coverage& coverage = scatter.coverage();
+      weightsByFlux(in, deposits, {mix64(key), 0, maxBounces, shares, deposits});
+  const Coverage& coverage = deposits.coverage();
   return learnEmission(
       in.lights, sent - sent / kPilotPhotonsPerFluxPhoton, key,
-      [&](const Emission&, const PhotonStart& start, Rng& rng, bool) {
+      [&](const EmissionSample&, const PhotonStart& start, Rng& rng, bool) {
         double squares = 0.0;
         Rng choice = rng;  // which of several VPLs gets the light
         followPhoton(

@@ -49,8 +49,8 @@ inline void addChecked(int64_t& sum, int64_t term) {
 struct VplSum {  // without padding, as its bytes are saved
   std::array<int64_t, 3> flux{}, firstBounce{};
   std::array<int64_t, 3> onlyPhotons{};  // part of flux that paths from the VPL cannot find
-  // Sums of (mean deposit / mean photon power)^2, see PhotonScatter::variance(); and the same times
-  // the density with which the photon started, relative to emission by power.
+  // Sums of (mean deposit / mean photon power)^2, see PhotonDeposits::variance(); and the same
+  // times the density with which the photon started, relative to emission by power.
   int64_t squares = 0, squaresByPower = 0;
   uint64_t photons = 0;
 

@@ -4,7 +4,7 @@
 #include <cstdio>
 
 #include "tools/common/run/result_warning.h"
-#include "tools/estimate/vpl_surface.h"
+#include "tools/estimate/lit_columns.h"
 
 namespace bnvpl {
 
@@ -34,7 +34,7 @@ constexpr double kCovering = 1.1547;  // 2 / sqrt(3)
 // Text that says why VPLs are dark, and what to do. `none` means that all VPLs are dark.
 std::string causeOfDark(const EstimateResult& result, bool none) {
   if (result.paths > 0 && result.energy.photons > 0)
-    return std::string("neither photons nor paths brought light there; ") +
+    return std::string("neither photons nor paths found light there; ") +
            (result.workShare < 1.0 ? "lower --irradiance-error" : "raise --photons") +
            ", or keep fewer VPLs with vpl-eliminate -n";
   if (result.paths > 0)
@@ -85,7 +85,7 @@ void reportPhotons(const EnergyAccount& a, Summary& summary) {
                 percent(a.escaped, a.emitted), percent(a.absorbed, a.emitted));
   summary.add("photons", a.photons, line);
   std::snprintf(line, sizeof line,
-                "reflected at diffuse hits %.4g W: deposited %.2f %%, outside the region %.2f %%, "
+                "reflected at rough hits %.4g W: deposited %.2f %%, outside the region %.2f %%, "
                 "incompatible %.2f %%, hidden %.2f %%",
                 a.reflected, percent(a.deposited, a.reflected), percent(a.outside, a.reflected),
                 percent(a.incompatible, a.reflected), percent(a.hidden, a.reflected));

@@ -9,7 +9,6 @@ namespace bnvpl {
 
 namespace {
 
-constexpr size_t kVplsPerUnit = 16;
 constexpr std::string_view kPathWork = "paths", kPathPointsWork = "paths.points",
                            kPathGroupsWork = "paths.groups";
 constexpr size_t unitsOf(size_t vpls) { return (vpls + kVplsPerUnit - 1) / kVplsPerUnit; }
@@ -39,8 +38,8 @@ PathSums VplPaths::tracePaths(uint32_t vpl, uint64_t points, EmitPoints& emitPoi
   Rng shift(settings_.key, vpl);
   const double x = double{shift.next()}, y = double{shift.next()};
   PhotonMis photons;
-  if (!settings_.emissionBalance.empty() && settings_.emissionBalance[vpl] > 0.0f)
-    photons = {&in_.lights, 0.0f, 1.0f, nullptr, settings_.guide, settings_.emissionBalance[vpl]};
+  if (!settings_.misRatio.empty() && settings_.misRatio[vpl] > 0.0f)
+    photons = {&in_.lights, 0.0f, 1.0f, nullptr, settings_.guide, settings_.misRatio[vpl]};
   for (uint64_t k = 0; k < points; ++k) {
     double atPoint = 0.0;
     Rng rng(random64(settings_.key, vpl, 1), k);

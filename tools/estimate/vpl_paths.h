@@ -10,7 +10,7 @@
 
 #include "tools/estimate/emit_points.h"
 #include "tools/estimate/estimate.h"
-#include "tools/estimate/vpl_surface.h"
+#include "tools/estimate/lit_columns.h"
 #include "transport/coverage.h"
 #include "transport/outgoing_radiance.h"
 
@@ -39,6 +39,9 @@ struct GroupPathSum {
   std::array<double, 3> flux{}, firstBounce{};
 };
 
+// VPLs that shards and progress count together.
+inline constexpr size_t kVplsPerUnit = 16;
+
 class VplPaths {
  public:
   struct Settings {
@@ -49,7 +52,7 @@ class VplPaths {
     const SpatialLightSampler* spatialLights = nullptr;  // learned distribution for light sampling
     // That of each VPL with the photons from `guide` that share its flux (PhotonMis); empty: none
     // do.
-    std::span<const float> emissionBalance = {};
+    std::span<const float> misRatio = {};
     const EmissionGuide* guide = nullptr;
   };
   VplPaths(const EstimateInputs& in, const Settings& settings)

@@ -13,9 +13,9 @@
 namespace bnvpl {
 namespace {
 
-constexpr RealOption kSpareOption =
-    realOption("shard-spare", "", 0, 10, "of its part",
-               "spare VPLs that a shard places; vpl-merge says if they are needed");
+constexpr RealOption kSpareOption = realOption(
+    "shard-spare", "", 0, 10, "",
+    "extra VPLs of a shard, as a fraction of its part; vpl-merge says if they are needed");
 
 struct Request : StageRequest {
   double shardSpare = 0.0;
@@ -31,7 +31,7 @@ int runPlace(const Request& request, const ToolOptions& tool) {
   const PlaceMethod& method = placeMethod(options);
   run.used.writes("-o", request.output, {request.shard ? OutputKind::Shard : kindOf(method.makes)});
   run.checkFiles();
-  if (!run.estimating())
+  if (!run.predictsCost())
     requireMemory(rowBytes, std::to_string(count) + " VPLs", "ask for fewer with -n");
   Scene scene = loadSceneFor(request.scene, Warnings::Hold);
   const PlaceViews views = placeViews(request.scene, request.viewShares, method, scene);
@@ -41,8 +41,8 @@ int runPlace(const Request& request, const ToolOptions& tool) {
   const Accelerator accel(scene, tool.processor);
   const LightSet lights(accel);
   const PlaceInputs inputs{accel, lights, views};
-  if (run.estimating()) {
-    return run.tell("VPLs placed,", [&](const ProgressFn& progress) {
+  if (run.predictsCost()) {
+    return run.predictCost("VPLs placed,", [&](const ProgressFn& progress) {
       return costOfPlacing(inputs, options, progress, rowBytes);
     });
   }
@@ -61,7 +61,7 @@ int runPlace(const Request& request, const ToolOptions& tool) {
                  task.summary);
     return {record, request.given, Json::object(), request.command, ""};
   };
-  return run.make({record, "VPLs", count, scene.files, whole, part});
+  return run.execute({record, "VPLs", count, scene.files, whole, part});
 }
 
 }  // namespace
@@ -70,7 +70,7 @@ int runPlace(const Request& request, const ToolOptions& tool) {
 // NOLINTNEXTLINE(bugprone-exception-escape): options declared wrongly would throw at every start
 int main(int argc, char** argv) {
   using namespace bnvpl;
-  CLI::App cli{"Drop candidate VPLs on the surfaces that light the view.", "vpl-place"};
+  CLI::App cli{"Place candidate VPLs on the surfaces that light the view.", "vpl-place"};
   Request request;
   ToolOptions tool;
   addSceneOptions(cli, request.scene, ViewCount::Several);

@@ -6,7 +6,7 @@
 
 namespace bnvpl {
 
-inline constexpr double kBytesPerPlaced = 40;  // per VPL; measured: 42
+inline constexpr double kBytesPerPlaced = 40;  // per VPL; a lower bound; measured: 42
 
 void reportPlaced(const PlaceResult& placed, Summary& summary);
 

@@ -1,4 +1,4 @@
-// --view, --camera and --view-shares of vpl-place: whose surroundings VPLs are placed for.
+// --view, --camera and --view-shares of vpl-place: the views that VPLs are placed for.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace bnvpl {
 
 inline constexpr TextOption kViewSharesOption =
     textOption("view-shares", "", "N,...",
-               "of several views: the parts of each in the paths; equal unless given");
+               "relative number of camera paths for each view; equal unless given");
 
 // "2,1" -> 2, 1. Throws UsageError.
 std::vector<uint64_t> parseViewShares(const std::string& text);

@@ -69,17 +69,17 @@ void requireConsistent(const Values& options, const Given& given, const RenderFi
   }
 }
 
-VplTable readLit(const fs::path& lit, const Values& options, bool estimating) {
+VplTable readLit(const fs::path& lit, const Values& options, bool predictsCost) {
   if (lit.empty()) return {};
   const bool nearField = options.has(kCompensateSlot) && options[kCompensateSlot] == "near-field";
-  if (!estimating) {
+  if (!predictsCost) {
     requireMemoryFor(lit, nearField ? kBytesPerVplWithNearField : kBytesPerVpl,
                      "keep fewer VPLs with vpl-eliminate -n");
   }
   return readVpl(lit, VplStage::Lit);
 }
 
-void requireLitOf(const Scene& scene, const VplTable& lit, const fs::path& file) {
+void checkLit(const Scene& scene, const VplTable& lit, const fs::path& file) {
   requireSameScene(file, lit.sceneHash, scene, "rerun the pipeline from vpl-place on this scene");
   requireRadiiWithin(file, lit.radius, scene);
   if (std::ranges::all_of(lit.flux, [](Vec3 flux) { return isBlack(flux); })) {
@@ -89,14 +89,14 @@ void requireLitOf(const Scene& scene, const VplTable& lit, const fs::path& file)
   }
 }
 
-void warnOfMissedLight(const Scene& scene, const LightSet& lights, const Values& options,
-                       const RenderFiles& files) {
+void checkLights(const Scene& scene, const LightSet& lights, const Values& options,
+                 const RenderFiles& files) {
   if (!files.lit.empty()) lights.requireSquares();
   const std::string missed = lightMissedInGlass(scene, lights, integratorOf(options).name);
   if (!missed.empty()) printWarnings("vpl-render", {missed});
 }
 
-void settleFilm(Given& given, Values& options, Scene& scene) {
+void resolveFilm(Given& given, Values& options, Scene& scene) {
   given = withFilterOf(scene.film, std::move(given));
   options = resolveRender(given);
   if (!options[kSizeOption].empty()) scene.film = parseSize(options[kSizeOption]);

@@ -19,11 +19,11 @@ void requireConsistent(const Values& options, const Given& given, const RenderFi
 
 // The lit VPLs; no rows where there is no file. Throws MemoryError where rendering them cannot fit,
 // unless the run only estimates.
-VplTable readLit(const fs::path& lit, const Values& options, bool estimating);
+VplTable readLit(const fs::path& lit, const Values& options, bool predictsCost);
 
 // Gives the scene the film that the options ask for, and the options the film's filter where they
 // name none. Throws UsageError for a crop beyond the film.
-void settleFilm(Given& given, Values& options, Scene& scene);
+void resolveFilm(Given& given, Values& options, Scene& scene);
 
 // Throws MemoryError if an image of this size cannot fit.
 void requireMemoryForImage(const Scene& scene, const Values& options);
@@ -32,11 +32,11 @@ void requireMemoryForImage(const Scene& scene, const Values& options);
 std::vector<fs::path> filesRead(const Scene& scene, const RenderFiles& files);
 
 // Throws InputError where the VPLs were not made on this scene. Warns where none of them has flux.
-void requireLitOf(const Scene& scene, const VplTable& lit, const fs::path& file);
+void checkLit(const Scene& scene, const VplTable& lit, const fs::path& file);
 
 // Warns of light that the chosen integrator cannot find. Throws InputError for lights that do not
 // fit VPLs.
-void warnOfMissedLight(const Scene& scene, const LightSet& lights, const Values& options,
-                       const RenderFiles& files);
+void checkLights(const Scene& scene, const LightSet& lights, const Values& options,
+                 const RenderFiles& files);
 
 }  // namespace bnvpl

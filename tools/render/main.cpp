@@ -20,19 +20,19 @@ int runRender(StageRequest& request, const RenderFiles& files, const ToolOptions
   run.used.writes("-o", request.output, {request.shard ? OutputKind::Shard : OutputKind::Exr});
   run.used.writes("--png", files.png, {OutputKind::Png});
   run.checkFiles();
-  const VplTable lit = readLit(files.lit, options, run.estimating());
+  const VplTable lit = readLit(files.lit, options, run.predictsCost());
   Scene scene = loadSceneFor(request.scene, files.lit.empty() ? Warnings::Print : Warnings::Hold);
   run.filesReady(scene.files);
-  settleFilm(request.given, options, scene);
-  if (!files.lit.empty()) requireLitOf(scene, lit, files.lit);
-  if (!run.estimating()) requireMemoryForImage(scene, options);
+  resolveFilm(request.given, options, scene);
+  if (!files.lit.empty()) checkLit(scene, lit, files.lit);
+  if (!run.predictsCost()) requireMemoryForImage(scene, options);
   const Film film = scene.film;
-  if (run.estimating()) scene.film = filmToTry(film);
+  if (run.predictsCost()) scene.film = filmToTry(film);
   const Accelerator accel(scene, tool.processor);
   const LightSet lights(accel);
-  warnOfMissedLight(scene, lights, options, files);
-  if (run.estimating()) {
-    return run.tell("samples,", [&](const ProgressFn& progress) {
+  checkLights(scene, lights, options, files);
+  if (run.predictsCost()) {
+    return run.predictCost("samples,", [&](const ProgressFn& progress) {
       const ImageToMake image{film, request.given, options, request.shard.has_value()};
       return costOfRendering(accel, lights, lit, image, progress);
     });
@@ -63,8 +63,8 @@ int runRender(StageRequest& request, const RenderFiles& files, const ToolOptions
     return {withLayers(made, options), request.given, sourcesOf(rendered), request.command,
             extendProvenance(lit.provenance, made)};
   };
-  return run.make({record(resumableOptions(options)), "samples", renderWork(scene, options),
-                   filesRead(scene, files), whole, part});
+  return run.execute({record(resumableOptions(options)), "samples", renderWork(scene, options),
+                      filesRead(scene, files), whole, part});
 }
 
 }  // namespace

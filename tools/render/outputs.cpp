@@ -79,7 +79,7 @@ double bytesPerPixelOf(const Values& options, size_t groups) {
   double bytes = 299;  // measured: 294 to 349, depending on layers
   if (redistributesFireflies(options)) bytes += 40;
   if (budgetOf(options)) bytes += 120;              // sums over passes
-  const bool photons = integratorOf(options).photons;
+  const bool photons = integratorOf(options).tracesPhotons;
   if (photons) bytes += 168;  // exact sums of photons
   if (groups > 0) bytes += 50.0 + double(groups) * (96 + (photons ? 168 : 0));
   return bytes;
@@ -259,7 +259,7 @@ void reportRender(const RenderResult& result, const Values& options, Summary& su
                 static_cast<unsigned long long>(options[kSppOption]), means.c_str());
   summary.add("samples", stats.samples, line);
   if (result.passes) reportPasses(*result.passes, options, summary);
-  if (integratorOf(options).gathers) reportGathered(result, options, summary);
+  if (integratorOf(options).gathersVpls) reportGathered(result, options, summary);
   const CausticStats& caustics = result.caustics;
   if (caustics.useful.guided > 0.0) {
     std::snprintf(

@@ -59,7 +59,7 @@ FilmOptions filmOptionsOf(const Values& options) {
 
 // Whether the integrator traces photons for this image.
 bool sendsPhotons(const Values& options) {
-  return integratorOf(options).photons && onlyOf(options) != Only::Direct;
+  return integratorOf(options).tracesPhotons && onlyOf(options) != Only::Direct;
 }
 
 // The last text given for an option; null if there is none.
@@ -113,7 +113,7 @@ Given withPixelSumOptions(const Given& given) {
 std::string gathering() {
   std::string names;
   for (const IntegratorMethod* m : integratorMethods()) {
-    if (m->gathers) names += (names.empty() ? "" : "|") + std::string(m->name);
+    if (m->gathersVpls) names += (names.empty() ? "" : "|") + std::string(m->name);
   }
   return names;
 }
@@ -178,10 +178,10 @@ uint64_t passSppOf(const Values& options) {
   return options.has(kPassSppOption) ? options[kPassSppOption] : uint64_t{kPassSpp};
 }
 
-std::optional<Budget> budgetOf(const Values& options) {
+std::optional<PassBudget> budgetOf(const Values& options) {
   if (!byPasses(options)) return {};
   const bool time = options.has(kTimeOption);
-  Budget budget;
+  PassBudget budget;
   if (time) budget.timeS = options[kTimeOption];
   if (options.has(kTargetErrorOption)) budget.error = options[kTargetErrorOption];
   budget.spp = options[kSppOption];
@@ -205,7 +205,7 @@ const IntegratorMethod& integratorOf(const Values& options) {
 std::vector<const Layer*> layersOf(const Values& options) {
   requireOwnCounters(options[kLayersKey], counterLayersOf(options));
   return parseLayers(options[kLayersKey],
-                     integratorOf(options).gathers && onlyOf(options) != Only::Direct,
+                     integratorOf(options).gathersVpls && onlyOf(options) != Only::Direct,
                      budgetOf(options).has_value(), options[kOnlyOption], counterLayersOf(options));
 }
 

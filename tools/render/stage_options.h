@@ -65,9 +65,9 @@ inline constexpr SwitchOption kForDenoiserOption = unrecorded(inTopic(
                  "denoise_normal, and sets --reuse 1")));
 inline constexpr TextOption kPixelsOption =
     choiceOption("pixels", "float", "half|float", "EXR channel type");
-inline constexpr TextOption kExposureOption = unrecorded(
-    inTopic(Topic::Files, textOption("exposure", "auto", "EV|auto",
-                                     "stops of the PNG; auto: the mean becomes middle grey")));
+inline constexpr TextOption kExposureOption = unrecorded(inTopic(
+    Topic::Files,
+    textOption("exposure", "auto", "EV|auto", "stops of the PNG; auto: log mean to middle grey")));
 // The help lists the layers.
 inline constexpr OptionKey<std::string> kLayersKey{"layers"};
 

@@ -143,7 +143,7 @@ class Explorer {
     if (this.row !== null) {
       const shares = this.sharesOfRow();
       const lit = shares.reduce((n, v) => n + (v > 0), 0), most = Math.max(...shares);
-      this.text.textContent = `VPL ${this.row} brings ` +
+      this.text.textContent = `VPL ${this.row} contributes ` +
           `${percentText(data.radiance[this.row] / this.light).replace("+", "")} of the VPLs' light in ` +
           `the picture. It is among the ${table.perPixel} strongest of ${lit} of ` +
           `${shares.length} pixels` +
@@ -164,7 +164,7 @@ class Explorer {
     this.text.textContent = found.length === 0
         ? `Pixel (${this.pixel.join(", ")}) of ${table.width}×${table.height}: no VPL lights it.`
         : `Pixel (${this.pixel.join(", ")}) of ${table.width}×${table.height}: ${found.length} ` +
-          `${found.length === 1 ? "VPL brings" : "VPLs bring"} ${percentText(Math.min(sum, 1)).replace("+", "")} of its VPL light, ` +
+          `${found.length === 1 ? "VPL contributes" : "VPLs contribute"} ${percentText(Math.min(sum, 1)).replace("+", "")} of its VPL light, ` +
           `${numberText(radiance, 3)} W/(m² sr). Rings: ${hidden} behind surfaces. ` +
           `Outside the picture: ${outside}.`;
     this.list.replaceChildren(...found.slice(0, shownRows).map(([row, share]) => el("tr", {},

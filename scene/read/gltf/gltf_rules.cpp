@@ -23,7 +23,7 @@ struct Rule {
   std::string_view path;  // "*" matches each element of an array or member of an object
   Kind kind;
   bool required = false;
-  double least = -kMax, most = kMax;
+  double lower = -kMax, upper = kMax;
   size_t count = 0;          // Numbers: their count
   std::string_view of = {};  // Index: into this array
   bool clamped = false;      // numbers out of range are clamped, with a warning
@@ -35,15 +35,15 @@ constexpr Rule textRule(std::string_view path, bool required = false) {
   return {path, Kind::Text, required};
 }
 constexpr Rule flagRule(std::string_view path) { return {path, Kind::Flag}; }
-constexpr Rule numberRule(std::string_view path, double least = -kMax, double most = kMax) {
-  return {path, Kind::Number, false, least, most};
+constexpr Rule numberRule(std::string_view path, double lower = -kMax, double upper = kMax) {
+  return {path, Kind::Number, false, lower, upper};
 }
-constexpr Rule numbersRule(std::string_view path, size_t count, double least = -kMax,
-                           double most = kMax) {
-  return {path, Kind::Numbers, false, least, most, count};
+constexpr Rule numbersRule(std::string_view path, size_t count, double lower = -kMax,
+                           double upper = kMax) {
+  return {path, Kind::Numbers, false, lower, upper, count};
 }
-constexpr Rule sizeRule(std::string_view path, double least = 0, double most = kMaxBytes) {
-  return {path, Kind::Whole, false, least, most};
+constexpr Rule sizeRule(std::string_view path, double lower = 0, double upper = kMaxBytes) {
+  return {path, Kind::Whole, false, lower, upper};
 }
 constexpr Rule indexRule(std::string_view path, std::string_view of) {
   return {path, Kind::Index, false, 0, 0, 0, of};
@@ -271,11 +271,11 @@ class Checker {
   void checkNumber(const Rule& rule, Json& v, const std::string& pointer) {
     if (!v.is_number()) fail(pointer, "must be a number; export the file again");
     const double number = v.get<double>();
-    if (number >= rule.least && number <= rule.most) return;
+    if (number >= rule.lower && number <= rule.upper) return;
     const std::string problem = "is " + shortestText(number) + ", outside " +
-                                shortestText(rule.least) + " to " + shortestText(rule.most);
+                                shortestText(rule.lower) + " to " + shortestText(rule.upper);
     if (!rule.clamped) fail(pointer, problem);
-    v = std::clamp(number, rule.least, rule.most);
+    v = std::clamp(number, rule.lower, rule.upper);
     if (moved_++ == 0) {
       movedFirst_ = document_.file.string() + "#" + pointer + ": " + problem + "; " +
                     shortestText(v.get<double>()) + " is used";
@@ -315,17 +315,17 @@ void requireValid(GltfDocument& document, const std::function<void(const std::st
     throw GltfError(document.file, "/asset/version",
                     "is '" + version + "'; glTF 2.0 is read, so export it as that");
   }
-  const std::string least = asset.value("minVersion", "2.0");
+  const std::string minVersion = asset.value("minVersion", "2.0");
   unsigned major = 0, minor = 0;
   int end = -1;
-  if (std::sscanf(least.c_str(), "%4u.%4u%n", &major, &minor, &end) != 2 ||
-      end != static_cast<int>(least.size())) {
+  if (std::sscanf(minVersion.c_str(), "%4u.%4u%n", &major, &minor, &end) != 2 ||
+      end != static_cast<int>(minVersion.size())) {
     throw GltfError(document.file, "/asset/minVersion",
-                    "is '" + least + "', not two numbers such as 2.0; mend or remove it");
+                    "is '" + minVersion + "', not two numbers such as 2.0; mend or remove it");
   }
   if (major > 2 || (major == 2 && minor > 0)) {
     throw GltfError(document.file, "/asset/minVersion",
-                    "is '" + least + "'; glTF 2.0 is read, so export it as that");
+                    "is '" + minVersion + "'; glTF 2.0 is read, so export it as that");
   }
 }
 

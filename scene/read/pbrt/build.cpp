@@ -120,7 +120,7 @@ class Meshes {
     return builder_.addObject(placed.object.empty() ? own : placed.object);
   }
 
-  Emission emission(const Shape& shape, const MeshData& mesh, const Affine& transform) const {
+  ShapeEmission emission(const Shape& shape, const MeshData& mesh, const Affine& transform) const {
     if (shape.areaLight == kNone) return {};
     const Entity& light = reader_.description.areaLights[shape.areaLight];
     const bool wantsArea = light.params.has("power");

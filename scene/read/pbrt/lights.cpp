@@ -180,13 +180,14 @@ void buildLights(const LightReader& reader, SceneBuilder& builder) {
   for (const Light& light : reader.description.lights) Builder(reader, light, builder).build();
 }
 
-Emission emissionOf(const LightReader& reader, const Entity& light, double areaM2, size_t pieces) {
+ShapeEmission emissionOf(const LightReader& reader, const Entity& light, double areaM2,
+                         size_t pieces) {
   if (light.type != "diffuse") {
     reader.notes.add(light.place, "area light '" + light.type + "' is not read; it is left out");
     return {};
   }
   const Params& p = light.params;
-  Emission e;
+  ShapeEmission e;
   e.twoSided = p.boolean("twosided", false);
   double factor = p.number("scale", 1.0, 0.0);
   double has = areaM2 * std::numbers::pi * (e.twoSided ? 2.0 : 1.0);

@@ -22,13 +22,14 @@ struct LightReader {
 void buildLights(const LightReader& reader, SceneBuilder& builder);
 
 // Emission of a shape, on its outside or on both sides.
-struct Emission {
+struct ShapeEmission {
   Vec3 radiance;
   bool twoSided = false;
   fs::path image;  // scales it over the shape's texture coordinates; empty if none
 };
 // `areaM2` is the area of the shape in the scene. `pieces` is the number of area lights that pbrt
 // makes of it, each of which has the `power`.
-Emission emissionOf(const LightReader& reader, const Entity& light, double areaM2, size_t pieces);
+ShapeEmission emissionOf(const LightReader& reader, const Entity& light, double areaM2,
+                         size_t pieces);
 
 }  // namespace bnvpl::pbrt

@@ -27,7 +27,7 @@ class Materials::Maker {
 
   // The material without emission and alpha; nothing for an interface.
   const std::optional<Material>& base(const MaterialRef& ref);
-  uint32_t of(const Shape& shape, const Emission& emission);
+  uint32_t of(const Shape& shape, const ShapeEmission& emission);
   void noteUnused() const;
 
  private:
@@ -262,7 +262,7 @@ void Materials::Maker::setAlpha(const Shape& shape, Material& m) {
     r_.notes.add(alpha->place, "a lamp of 'alpha' 0, which shines unseen, is left out");
 }
 
-uint32_t Materials::Maker::of(const Shape& shape, const Emission& emission) {
+uint32_t Materials::Maker::of(const Shape& shape, const ShapeEmission& emission) {
   const std::optional<Material>& base = this->base(shape.material);
   if (!base) return kNone;
   const Param* alpha = shape.params.find("alpha");
@@ -308,7 +308,7 @@ Materials::Materials(const LightReader& reader, SceneBuilder& builder)
     : maker_(std::make_unique<Maker>(reader, builder)) {}
 Materials::~Materials() = default;
 void Materials::expect(const Shape& shape) { maker_->base(shape.material); }
-uint32_t Materials::of(const Shape& shape, const Emission& emission) {
+uint32_t Materials::of(const Shape& shape, const ShapeEmission& emission) {
   return maker_->of(shape, emission);
 }
 void Materials::noteUnused() const { maker_->noteUnused(); }

@@ -118,25 +118,25 @@ const toml::node& TomlSection::node(const char* key) const {
   return *n;
 }
 
-double TomlSection::numberOf(const toml::node& n, const char* key, double least,
-                             double most) const {
+double TomlSection::numberOf(const toml::node& n, const char* key, double lower,
+                             double upper) const {
   const std::string quoted = std::string("'") + key + "'";
   const auto v = n.value<double>();
   if (!v || !std::isfinite(*v)) fail(n, quoted + " must be a number");
-  if (*v < 0.0 && least == 0.0)
+  if (*v < 0.0 && lower == 0.0)
     fail(n, quoted + " must not be negative, but is " + shortestText(*v));
-  if (*v < least || *v > most) {
-    fail(n, quoted + " is " + shortestText(*v) + ", outside " + shortestText(least) + " to " +
-                shortestText(most));
+  if (*v < lower || *v > upper) {
+    fail(n, quoted + " is " + shortestText(*v) + ", outside " + shortestText(lower) + " to " +
+                shortestText(upper));
   }
   return *v;
 }
 
-uint32_t TomlSection::integer(const char* key, uint32_t least, uint32_t most) const {
+uint32_t TomlSection::integer(const char* key, uint32_t lower, uint32_t upper) const {
   const auto v = node(key).value_exact<int64_t>();
-  if (!v || *v < int64_t{least} || *v > int64_t{most}) {
+  if (!v || *v < int64_t{lower} || *v > int64_t{upper}) {
     fail(node(key), std::string("'") + key + "' must be a whole number from " +
-                        std::to_string(least) + " to " + std::to_string(most));
+                        std::to_string(lower) + " to " + std::to_string(upper));
   }
   return static_cast<uint32_t>(*v);
 }
@@ -217,19 +217,19 @@ void TomlSection::requireOnly(const std::string& what, const std::set<std::strin
   }
 }
 
-FilePoint TomlSection::triple(const char* key, double least, double most) const {
+FilePoint TomlSection::triple(const char* key, double lower, double upper) const {
   const toml::array* a = node(key).as_array();
   if (!a || a->size() != 3) fail(node(key), std::string("'") + key + "' must be [x, y, z]");
   FilePoint v;
-  for (size_t i = 0; i < 3; ++i) v[i] = numberOf(*a->get(i), key, least, most);
+  for (size_t i = 0; i < 3; ++i) v[i] = numberOf(*a->get(i), key, lower, upper);
   return v;
 }
 
-std::array<float, 2> TomlSection::pair(const char* key, double most) const {
+std::array<float, 2> TomlSection::pair(const char* key, double upper) const {
   const toml::array* a = node(key).as_array();
   if (!a || a->size() != 2) fail(node(key), std::string("'") + key + "' must be [x, y]");
   const auto at = [&](size_t i) {
-    return static_cast<float>(numberOf(*a->get(i), key, -most, most));
+    return static_cast<float>(numberOf(*a->get(i), key, -upper, upper));
   };
   return {at(0), at(1)};
 }

@@ -42,18 +42,18 @@ class TomlSection {
   bool has(const char* key) const { return table_.contains(key); }
   const toml::node& node(const char* key) const;
 
-  double number(const char* key, double least, double most) const {
-    return numberOf(node(key), key, least, most);
+  double number(const char* key, double lower, double upper) const {
+    return numberOf(node(key), key, lower, upper);
   }
-  double number(const char* key, double least, double most, double otherwise) const {
-    return has(key) ? number(key, least, most) : otherwise;
+  double number(const char* key, double lower, double upper, double otherwise) const {
+    return has(key) ? number(key, lower, upper) : otherwise;
   }
-  double numberOf(const toml::node& n, const char* key, double least, double most) const;
-  uint32_t integer(const char* key, uint32_t least, uint32_t most) const;
+  double numberOf(const toml::node& n, const char* key, double lower, double upper) const;
+  uint32_t integer(const char* key, uint32_t lower, uint32_t upper) const;
   std::string text(const char* key) const;
   // A text without control characters, with slashes for backslashes.
   std::string fileName(const char* key) const;
-  std::array<float, 2> pair(const char* key, double most) const;  // magnitudes up to `most`
+  std::array<float, 2> pair(const char* key, double upper) const;  // magnitudes up to `upper`
   FilePoint place(const char* key) const { return triple(key, -kFurthestPlace, kFurthestPlace); }
   bool flag(const char* key, bool otherwise) const;
   // Index of the text in `names`.
@@ -68,15 +68,15 @@ class TomlSection {
   void requireOnly(const std::string& what, const std::set<std::string>& allowed) const;
   FilePoint point(const char* key) const { return triple(key, -kMaxMagnitude, kMaxMagnitude); }
   Vec3 color(const char* key) const;                 // not negative
-  Vec3 vector(const char* key, double most) const {  // magnitudes up to `most`
-    return fromOrigin(triple(key, -most, most), {});
+  Vec3 vector(const char* key, double upper) const {  // magnitudes up to `upper`
+    return fromOrigin(triple(key, -upper, upper), {});
   }
   Vec3 direction(const char* key) const;  // unit length
 
   static constexpr double kMaxMagnitude = 1e30;  // limit of coordinates, factors and powers
 
  private:
-  FilePoint triple(const char* key, double least, double most) const;
+  FilePoint triple(const char* key, double lower, double upper) const;
   void checkKnown(const std::string& key, const toml::node& node,
                   const std::vector<std::string>& known) const;
 

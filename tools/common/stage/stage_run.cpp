@@ -26,21 +26,21 @@ StageRun::StageRun(const std::string& name, const StageRequest& request, const T
 
 void StageRun::checkFiles() {
   used.writes("--checkpoint", request_.checkpoint.file).writes(tool_);
-  if (!estimating()) used.check();
+  if (!predictsCost()) used.check();
 }
 
 void StageRun::filesReady(const std::vector<fs::path>& sceneFiles) {
-  if (!estimating()) used.ready(sceneFiles);
+  if (!predictsCost()) used.ready(sceneFiles);
 }
 
-int StageRun::tell(const std::string& counting,
-                   const std::function<Cost(const ProgressFn&)>& cost) const {
+int StageRun::predictCost(const std::string& counting,
+                          const std::function<Cost(const ProgressFn&)>& cost) const {
   ProgressMeter meter("estimate: " + counting, 0, progressStyle(tool_));
   printCost(cost(meter.callback()).ofShard(request_.shard), request_.cost);
   return kExitOk;
 }
 
-int StageRun::make(const StageWork& work) {
+int StageRun::execute(const StageWork& work) {
   const auto& shard = request_.shard;
   Checkpoint checkpoint(request_.checkpoint, withShard(work.identity, shard));
   OutputSet files;

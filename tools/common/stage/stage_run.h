@@ -6,7 +6,7 @@
 //   run.checkFiles();
 //   ... the inputs are read
 //   run.filesReady(scene.files);
-//   return run.estimating() ? run.tell("VPLs placed,", cost) : run.make(work);
+//   return run.predictsCost() ? run.predictCost("VPLs placed,", cost) : run.execute(work);
 #pragma once
 
 #include <functional>
@@ -65,15 +65,16 @@ class StageRun {
   StageRun(const std::string& name, const StageRequest& request, const ToolOptions& tool);
 
   double startS() const { return summary_.startS(); }  // before any file is read
-  bool estimating() const { return request_.cost.estimate; }
+  bool predictsCost() const { return request_.cost.estimate; }
   // RunFiles::check() and ready(), which a run that estimates does not need.
   void checkFiles();
   void filesReady(const std::vector<fs::path>& sceneFiles);
 
   // Prints the cost of the request, or of its shard. `counting` names the units of the trial.
-  int tell(const std::string& counting, const std::function<Cost(const ProgressFn&)>& cost) const;
+  int predictCost(const std::string& counting,
+                  const std::function<Cost(const ProgressFn&)>& cost) const;
   // Does the work, and replaces the outputs together. Returns kExitOk.
-  int make(const StageWork& work);
+  int execute(const StageWork& work);
 
   RunFiles used;
 

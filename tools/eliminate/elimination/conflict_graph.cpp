@@ -53,7 +53,7 @@ ConflictGraph::ConflictGraph(std::vector<Vec3> position, std::vector<Vec3> norma
   row_ = inOrder<uint32_t>(row_, order);
   cells_.order = {};
   weight_.resize(size());
-  const auto phase = progress.before("conflict weights", size());
+  const auto phase = progress.beginPhase("conflict weights", size());
   parallelRanges(size(), 256, [&](size_t begin, size_t end) {
     for (auto i = static_cast<uint32_t>(begin); i < end; ++i) {
       uint64_t sum = 0;

@@ -7,7 +7,7 @@
 #include "core/parallel.h"
 #include "core/random.h"
 #include "core/random_streams.h"
-#include "spatial/local_density.h"
+#include "spatial/represented_area.h"
 #include "tools/eliminate/eliminate.h"
 #include "transport/camera.h"
 #include "transport/specular_path.h"
@@ -23,7 +23,7 @@ constexpr auto kCameraPointsOption =
 // Gives every VPL a positive probability, without which the image would be biased: a VPL that
 // lights none of the points may light other pixels.
 constexpr auto kMinProbabilityOption =
-    realOption("least-probability", "0.01", 1e-6, 1, "", "added to the probability of every VPL");
+    realOption("min-probability", "0.01", 1e-6, 1, "", "added to the probability of every VPL");
 // Without it, a VPL next to a point would outweigh all others.
 constexpr auto kClampOption =
     realOption("clamp", "1", 0, 1000, "radii of the VPL",
@@ -36,7 +36,7 @@ constexpr auto kOptions =
 std::vector<SurfacePoint> cameraPoints(const EliminateInputs& in, uint64_t key, uint64_t count) {
   const Scene& scene = in.accel->scene();
   std::vector<SurfacePoint> points;
-  const auto phase = in.progress.before("camera points", count);
+  const auto phase = in.progress.beginPhase("camera points", count);
   for (uint64_t i = 0; i < count; ++i) {
     const Point2 film = r2Sequence(i, 0.5, 0.5);
     Rng rng(key, i);
@@ -71,25 +71,26 @@ double contribution(const VplLights& vpls, size_t i, const Accelerator& accel,
 // Probabilities p_i = min(Phi_i / Phi_v + epsilon, 1), where the average Phi_v makes the expected
 // number of accepted VPLs `count`. The paper refines Phi_v in rounds; here all contributions Phi_i
 // are known, and bisection finds it, since the expectation falls with Phi_v.
-std::vector<double> probabilities(const std::vector<double>& brings, double count, double epsilon) {
+std::vector<double> probabilities(const std::vector<double>& contributions, double count,
+                                  double epsilon) {
   const auto expected = [&](double average) {
     double sum = 0.0;
-    for (const double b : brings) sum += std::min(1.0, b / average + epsilon);
+    for (const double b : contributions) sum += std::min(1.0, b / average + epsilon);
     return sum;
   };
   double low = 0.0, high = 0.0;
-  for (const double b : brings) high += b;
+  for (const double b : contributions) high += b;
   if (expected(high) > count) {
     throw InputError(
         "even the VPLs that bring nothing add up to more than -n by their least "
-        "probability; lower --least-probability or keep more");
+        "probability; lower --min-probability or keep more");
   }
   for (int step = 0; step < 200; ++step) {
     const double middle = 0.5 * (low + high);
     (expected(middle) > count ? low : high) = middle;
   }
-  std::vector<double> p(brings.size());
-  for (size_t i = 0; i < p.size(); ++i) p[i] = std::min(1.0, brings[i] / high + epsilon);
+  std::vector<double> p(contributions.size());
+  for (size_t i = 0; i < p.size(); ++i) p[i] = std::min(1.0, contributions[i] / high + epsilon);
   return p;
 }
 
@@ -103,17 +104,18 @@ Kept run(const EliminateInputs& in, const Values& options) {
   const uint64_t key = streamKey(options[kSeedOption], RandomStream::Eliminate) + 1;
   const std::vector<SurfacePoint> points = cameraPoints(in, key, options[kCameraPointsOption]);
   const VplLights vpls = makeVplLights(all, *in.accel, options.real32(kClampOption));
-  std::vector<double> brings(all.size(), 0.0);
+  std::vector<double> contributions(all.size(), 0.0);
   parallelFor(vpls.size(), 16, [&](size_t k) {
-    brings[vpls.row[k]] = contribution(vpls, k, *in.accel, points);
+    contributions[vpls.row[k]] = contribution(vpls, k, *in.accel, points);
     if (in.progress) in.progress(1);
   });
-  if (std::ranges::all_of(brings, [](double b) { return b == 0.0; })) {
+  if (std::ranges::all_of(contributions, [](double b) { return b == 0.0; })) {
     throw InputError(in.accel->scene().name(),
-                     "no VPL brings any light to what the camera sees; place more with vpl-place");
+                     "no VPL sends any light to what the camera sees; place more with vpl-place");
   }
-  const std::vector<double> p = probabilities(
-      brings, static_cast<double>(options[kEliminateCountOption]), options[kMinProbabilityOption]);
+  const std::vector<double> p =
+      probabilities(contributions, static_cast<double>(options[kEliminateCountOption]),
+                    options[kMinProbabilityOption]);
   Kept kept;
   std::vector<Vec3> position, normal;
   for (uint32_t i = 0; i < p.size(); ++i) {
@@ -123,7 +125,7 @@ Kept run(const EliminateInputs& in, const Values& options) {
     position.push_back(all.position[i]);
     normal.push_back(all.normal[i]);
   }
-  ShareRadii radii = shareRadii(position, normal);
+  RepresentedRadii radii = representedRadii(position, normal);
   kept.radius = std::move(radii.radius);
   kept.area = radii.area;
   kept.rMax = radii.rMax;

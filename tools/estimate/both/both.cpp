@@ -10,7 +10,7 @@
 #include "tools/estimate/both/phases.h"
 #include "tools/estimate/both/split.h"
 #include "tools/estimate/both/split_records.h"
-#include "tools/estimate/photon_scatter.h"
+#include "tools/estimate/photon_deposits.h"
 #include "tools/estimate/vpl_paths.h"
 
 namespace bnvpl::methods::estimate::both {
@@ -22,9 +22,8 @@ constexpr auto kTotalWorkOption = inTopic(
                              "total work, as a number of photons; paths take a part of it"));
 constexpr auto kIrradianceErrorOption =
     inTopic(Topic::Speed, realOption("irradiance-error", "0.005", 0, 1, "",
-                                     "less work is done if pilots predict this mean relative error "
-                                     "of the light in view that comes from VPLs; 0: all work is "
-                                     "done"));
+                                     "do less work if pilots predict that VPLs cause at most this "
+                                     "mean relative error in all light in view; 0: do all work"));
 constexpr auto kOptions =
     optionTable(kTotalWorkOption, kEmissionOption, kIrradianceErrorOption, kPathsOption,
                 kRadiusOption, kPathBouncesOption, kEmitPointsOption);
@@ -42,21 +41,21 @@ constexpr double kMinIndirectShare = 0.05;
 // points per VPL after it.
 constexpr uint64_t kTrialPhotons = 1 << 18, kTrialVpls = 8192;
 constexpr double kTrialPaths = 1 << 18, kTrialPoints = 8.0;
-constexpr uint64_t kPhotonsOfUnit = 4096, kVplsOfUnit = 16, kMinUnits = 256;
-// Phases that shards divide. The phases before them are the pilots.
-constexpr size_t kPhotonPhase = 2, kPathPhase = 3;
+constexpr uint64_t kMinUnits = 256;
+// Phases of the work. Shards divide the last two, and each makes the pilots by itself.
+constexpr size_t kPhotonPilotPhase = 0, kPathPilotPhase = 1, kPhotonPhase = 2, kPathPhase = 3;
 
 // Photons of a phase, and the sums of their deposits.
 struct PhotonWork {
   PhotonShares shares;
-  PhotonScatter scatter;
+  PhotonDeposits deposits;
   PhotonSums sums;
 
   PhotonWork(const EstimateInputs& in, const Values& options, uint64_t photons)
-      : shares(in.lights, photons), scatter(in, options.real32(kRadiusOption), shares.total()) {}
+      : shares(in.lights, photons), deposits(in, options.real32(kRadiusOption), shares.total()) {}
 
   double mean3(const std::array<int64_t, 3>& v) const {
-    const FixedPoint& f = scatter.fixed();
+    const FixedPoint& f = deposits.fixed();
     return (f.decode(v[0]) + f.decode(v[1]) + f.decode(v[2])) / 3.0;
   }
 };
@@ -79,11 +78,11 @@ class Estimator {
     if (in_.controls.sink && in_.controls.shard.has(0)) giveSplit(*in_.controls.sink, split);
     // A cost trial traces about as many units of photons as of paths, so that any part of it has
     // both.
-    const uint64_t sent =
-        unitsToTry(in_.controls.trial, split.photons,
-                   kPhotonsOfUnit * std::max(kMinUnits, in_.vpls.size() / kVplsOfUnit));
+    const uint64_t sent = unitsToTry(
+        in_.controls.trial, split.photons,
+        kPhotonsPerRange * std::max<uint64_t>(kMinUnits, in_.vpls.size() / kVplsPerUnit));
     const PhotonWork photons =
-        trace(kPhotonPhase, RandomStream::Photons, sent, split.emissionBalance,
+        trace(kPhotonPhase, RandomStream::Photons, sent, split.misRatio,
               static_cast<double>(split.photons) / static_cast<double>(sent));
     const PathResult paths = traceSplitPaths(split);
     return combine(split, photons, paths);
@@ -119,22 +118,22 @@ class Estimator {
   }
 
   PhotonWork trace(size_t phase, RandomStream stream, uint64_t count,
-                   std::span<const float> balance = {}, double times = 1.0) {
+                   std::span<const float> misRatios = {}, double trialScale = 1.0) {
     PhotonWork work(in_, options_, count);
-    work.scatter.setEmissionBalance(balance);
+    work.deposits.setMisRatios(misRatios);
     const PhotonRun run{streamKey(options_[kSeedOption], stream),
                         emitPointsOf(phase),
                         maxBounces(),
                         work.shares,
-                        work.scatter,
+                        work.deposits,
                         &emission_.guide};
     const auto equivalent = static_cast<uint64_t>(progressScale_ * static_cast<double>(count));
     work.sums = phases_.run(
-        phase, times,
+        phase, trialScale,
         [&](const WorkControls& controls) {
           return withProgress(equivalent, work.shares.total(), [&](const ProgressFn& progress) {
             return tracePhotons({in_.vpls, in_.accel, in_.lights, progress, controls}, run,
-                                scatterToOneInSight);
+                                depositToOneInSight);
           });
         },
         [&](const PhotonSums& sums) { return finishedState(sums, work.shares.total()); });
@@ -142,13 +141,14 @@ class Estimator {
   }
 
   PathResult tracePaths(size_t phase, RandomStream stream, std::span<const uint64_t> points,
-                        std::span<const float> balance, uint64_t equivalent, double times = 1.0) {
+                        std::span<const float> misRatios, uint64_t equivalent,
+                        double trialScale = 1.0) {
     if (!spatialLights_) spatialLights_ = makeSpatialLightSampler(in_, options_[kSeedOption]);
     const VplPaths vplPaths(in_, {streamKey(options_[kSeedOption], stream), options_[kPathsOption],
                                   maxBounces(), options_.real32(kRadiusOption), emitPointsOf(phase),
-                                  spatialLights_.get(), balance, &emission_.guide});
+                                  spatialLights_.get(), misRatios, &emission_.guide});
     return phases_.run(
-        phase, times,
+        phase, trialScale,
         [&](const WorkControls& controls) {
           uint64_t all = 0;
           for (const uint64_t n : points) all += vplPaths.pathsOf(n);
@@ -173,8 +173,8 @@ class Estimator {
       left -= static_cast<double>(n);
       few += static_cast<double>(n);
     }
-    return tracePaths(kPathPhase, RandomStream::VplPaths, points, split.emissionBalance,
-                      work_ - reported_, few > 0.0 ? all / few : 1.0);
+    return tracePaths(kPathPhase, RandomStream::VplPaths, points, split.misRatio, work_ - reported_,
+                      few > 0.0 ? all / few : 1.0);
   }
 
   // The error of --irradiance-error is relative to all light in view, of which VPLs give a share.
@@ -190,52 +190,64 @@ class Estimator {
     return std::any_cast<const Split&>(kept);
   }
 
-  Split pilot() {
-    CostTrial* const trial = in_.controls.trial;
-    const auto few = static_cast<uint64_t>(std::ceil(kPilot * static_cast<double>(work_)));
-    const uint64_t sent = unitsToTry(trial, few, kTrialPhotons);
-    const PhotonWork photons = trace(0, RandomStream::PilotPhotons, sent, {},
+  void photonPilot(uint64_t few, Pilots& pilots) {
+    const uint64_t sent = unitsToTry(in_.controls.trial, few, kTrialPhotons);
+    const PhotonWork photons = trace(kPhotonPilotPhase, RandomStream::PilotPhotons, sent, {},
                                      static_cast<double>(few) / static_cast<double>(sent));
     if (sent < few) reported_ = few;
-    Pilots pilots;
     pilots.photons = static_cast<double>(photons.shares.total());
-    pilots.photonPower = photons.scatter.photonPower();
+    pilots.photonPower = photons.deposits.photonPower();
     pilots.photonCost =
         static_cast<double>(photons.sums.rays + photons.sums.guardRays) / pilots.photons;
-    const double whole = pilots.photonCost * static_cast<double>(work_);
+    for (const VplSum& s : photons.sums.vpl) {
+      pilots.byPhotons.push_back({photons.mean3(s.flux) - photons.mean3(s.onlyPhotons),
+                                  photons.deposits.variance(s),
+                                  photons.deposits.varianceByPower(s)});
+    }
+  }
 
-    const auto vpls = static_cast<double>(in_.vpls.size());
-    const double guess = vpls * kGuessedRays * static_cast<double>(options_[kPathsOption]);
+  // Returns the rays traced. A cost trial measures every `step`-th VPL, which represents those that
+  // follow it in the file.
+  double pathPilot(uint64_t points, uint64_t photonsBefore, Pilots& pilots) {
+    const size_t count = in_.vpls.size();
+    const double paths = static_cast<double>(count * points * options_[kPathsOption]);
+    const auto step =
+        static_cast<size_t>(in_.controls.trial ? std::ceil(paths / kTrialPaths) : 1.0);
+    std::vector<uint64_t> pointsOf(count, 0);
+    for (size_t i = 0; i < count; i += step) pointsOf[i] = points;
+    const PathResult pilot = tracePaths(kPathPilotPhase, RandomStream::PilotPaths, pointsOf, {},
+                                        photonsBefore, static_cast<double>(step));
+    pilots.points = static_cast<double>(points);
+    double rays = 0.0;
+    for (size_t i = 0; i < count; ++i) {
+      const PathSums& s = pilot.sums[i - i % step];
+      pilots.byPaths.push_back({s.meanFlux(), s.variance()});
+      pilots.pointCost.push_back(static_cast<double>(s.rays) / pilots.points);
+      rays += static_cast<double>(s.rays);
+    }
+    return rays;
+  }
+
+  Split pilot() {
+    const auto few = static_cast<uint64_t>(std::ceil(kPilot * static_cast<double>(work_)));
+    Pilots pilots;
+    photonPilot(few, pilots);
+    const double whole = pilots.photonCost * static_cast<double>(work_);
+    const double guess = static_cast<double>(in_.vpls.size()) * kGuessedRays *
+                         static_cast<double>(options_[kPathsOption]);
     if (guess * kMinPoints > kMaxPilotShare * whole) return photonsAlone(work_ - reported_);
     const uint64_t points =
         std::clamp<uint64_t>(static_cast<uint64_t>(kPilot * whole / guess), kMinPoints, kMaxPoints);
-    // A cost trial measures every `step`-th VPL, which represents those that follow it in the file.
-    const double pathsOf = vpls * static_cast<double>(points * options_[kPathsOption]);
-    const auto step = static_cast<size_t>(trial ? std::ceil(pathsOf / kTrialPaths) : 1.0);
-    std::vector<uint64_t> pointsOf(in_.vpls.size(), 0);
-    for (size_t i = 0; i < pointsOf.size(); i += step) pointsOf[i] = points;
-    const std::vector<PathSums> some =
-        tracePaths(1, RandomStream::PilotPaths, pointsOf, {}, few, static_cast<double>(step)).sums;
-    std::vector<PathSums> paths(some.size());
-    for (size_t i = 0; i < paths.size(); ++i) paths[i] = some[i - i % step];
-    pilots.points = static_cast<double>(points);
-    double spent = pilots.photonCost * (trial ? static_cast<double>(few) : pilots.photons);
-    for (size_t i = 0; i < in_.vpls.size(); ++i) {
-      const VplSum& s = photons.sums.vpl[i];
-      pilots.byPhotons.push_back({photons.mean3(s.flux) - photons.mean3(s.onlyPhotons),
-                                  photons.scatter.variance(s), photons.scatter.varianceByPower(s)});
-      pilots.byPaths.push_back({paths[i].meanFlux(), paths[i].variance()});
-      const double cost = static_cast<double>(paths[i].rays);
-      pilots.pointCost.push_back(cost / pilots.points);
-      spent += cost;
-    }
+    const bool trial = in_.controls.trial != nullptr;
+    const double spent = pilots.photonCost * (trial ? static_cast<double>(few) : pilots.photons) +
+                         pathPilot(points, few, pilots);
     const auto dark = [](const auto& pilot) {
       return std::ranges::all_of(pilot, [](const auto& p) { return p.flux == 0.0; });
     };
     // Nothing tells how to divide the work, as where only photons find the light.
     if (!trial && dark(pilots.byPhotons) && dark(pilots.byPaths))
       return photonsAlone(work_ - reported_);
-    const Budget budget{std::max(whole - spent, 0.5 * whole), irradianceError()};
+    const WorkBudget budget{std::max(whole - spent, 0.5 * whole), irradianceError()};
     const Split split =
         trial ? splitOfSubset(pilots, budget) : splitWork(in_.vpls, in_.accel, pilots, budget);
     progressScale_ = static_cast<double>(work_ - reported_) * pilots.photonCost / split.cost;
@@ -245,9 +257,9 @@ class Estimator {
   // Split for a cost trial, from every `step`-th VPL, which represents those that follow it. A
   // photon serves all VPLs, so its cost is divided by `step`; the irradiance from fewer VPLs has a
   // larger error.
-  Split splitOfSubset(Pilots pilots, Budget budget) const {
+  Split splitOfSubset(Pilots pilots, WorkBudget budget) const {
     const size_t count = in_.vpls.size(), step = (count + kTrialVpls - 1) / kTrialVpls;
-    const auto times = static_cast<double>(step);
+    const auto trialScale = static_cast<double>(step);
     std::vector<uint32_t> rows;
     for (size_t i = 0; i < count; i += step) rows.push_back(static_cast<uint32_t>(i));
     const auto keep = [&](auto& all) {
@@ -257,17 +269,17 @@ class Estimator {
     keep(pilots.byPhotons);
     keep(pilots.byPaths);
     keep(pilots.pointCost);
-    pilots.photonCost /= times;
-    const CostTrial::Part part(in_.controls.trial, times);
+    pilots.photonCost /= trialScale;
+    const CostTrial::Part part(in_.controls.trial, trialScale);
     const Split some = splitWork(keepRows(in_.vpls, rows), in_.accel, pilots,
-                                 {budget.cost / times, budget.error * std::sqrt(times)});
+                                 {budget.cost / trialScale, budget.error * std::sqrt(trialScale)});
     Split split = some;
-    split.cost *= times;
+    split.cost *= trialScale;
     split.points.resize(count);
-    split.emissionBalance.resize(count);
+    split.misRatio.resize(count);
     for (size_t i = 0; i < count; ++i) {
       split.points[i] = some.points[i / step];
-      split.emissionBalance[i] = some.emissionBalance[i / step];
+      split.misRatio[i] = some.misRatio[i / step];
     }
     return split;
   }
@@ -277,14 +289,14 @@ class Estimator {
             std::vector<float>(in_.vpls.size(), 0.0f)};
   }
 
-  // Flux of each VPL: the sum of what photons and paths brought, which have their weights.
+  // Flux of each VPL: the sum of the contributions of photons and paths, which have MIS weights.
   EstimateResult combine(const Split& split, const PhotonWork& photons,
                          const PathResult& paths) const {
     EstimateResult result{in_.vpls,
-                          accountOf(photons.sums, photons.scatter, photons.shares.total()), 0};
+                          accountOf(photons.sums, photons.deposits, photons.shares.total()), 0};
     VplTable& lit = result.table;
     beginLit(lit, options_.real32(kRadiusOption));
-    const FixedPoint& fixed = photons.scatter.fixed();
+    const FixedPoint& fixed = photons.deposits.fixed();
     for (size_t i = 0; i < lit.size(); ++i) {
       const VplSum& s = photons.sums.vpl[i];
       const PathSums& r = paths.sums[i];
@@ -297,14 +309,14 @@ class Estimator {
         sum += flux / 3.0;
       }
       lit.photons[i] = s.photons;
-      const double variance = photons.scatter.variance(s) + r.variance();
+      const double variance = photons.deposits.variance(s) + r.variance();
       if (sum > 0.0) lit.relativeError[i] = static_cast<float>(std::sqrt(variance) / sum);
       result.paths += r.paths;
       result.energy.nonFinite += r.nonFinite;
     }
     result.workShare = split.costShare;
     result.useful = emission_.useful;
-    VplGroups groups = photons.scatter.groupFlux(photons.sums);
+    VplGroups groups = photons.deposits.groupFlux(photons.sums);
     addGroupsTo(groups, paths);
     finishGroups(std::move(groups), lit);
     EmitPoints points = photons.sums.points;

@@ -7,7 +7,7 @@
 #include "tests/transport/plain_scene.h"
 #include "tools/estimate/both/irradiance_probes.h"
 #include "tools/estimate/both/split.h"
-#include "tools/estimate/photon_scatter.h"
+#include "tools/estimate/photon_deposits.h"
 #include "tools/estimate/vpl_paths.h"
 
 namespace bnvpl::test {
@@ -70,15 +70,15 @@ TEST(Both, PhotonsAndPathsShareTheLightOfGuidedEmission) {
   EXPECT_GT(learned.useful.guided, 2.0 * learned.useful.byPower);
   for (const float balance : {0.3f, 3.0f, 30.0f}) {
     const std::vector<float> balances(vpls.size(), balance);
-    PhotonScatter scatter(in, 1.7f, shares.total());
-    scatter.setEmissionBalance(balances);
+    PhotonDeposits deposits(in, 1.7f, shares.total());
+    deposits.setMisRatios(balances);
     const PhotonSums photons =
-        tracePhotons(in, {1, 0, 32, shares, scatter, &learned.guide}, scatterToOneInSight);
+        tracePhotons(in, {1, 0, 32, shares, deposits, &learned.guide}, depositToOneInSight);
     const VplPaths paths(in, {2, 4, 32, 1.7f, 0, nullptr, balances, &learned.guide});
     const std::vector<uint64_t> points(vpls.size(), 64);
     double sum = 0.0, ofPaths = 0.0;
     for (const VplSum& s : photons.vpl)
-      for (size_t c = 0; c < 3; ++c) sum += scatter.fixed().decode(s.flux[c]) / 3.0;
+      for (size_t c = 0; c < 3; ++c) sum += deposits.fixed().decode(s.flux[c]) / 3.0;
     for (const PathSums& s : tracePathsOfAll(in, paths, points).sums) ofPaths += s.meanFlux();
     EXPECT_GT(ofPaths / (sum + ofPaths), 0.005) << balance;
     EXPECT_LT(ofPaths / (sum + ofPaths), 0.9) << balance;
@@ -333,7 +333,7 @@ TEST(Both, WeightsAreNotLedByFewSamplesOfThePilots) {
   const Split split = splitWork(vpls, world.accel, pilots, {kTimes * kVpls, 0.0});
   double result = 0.0;
   for (size_t i = 0; i < kVpls; ++i) {
-    const double w = 1.0 / (1.0 + double{split.emissionBalance[i]});
+    const double w = 1.0 / (1.0 + double{split.misRatio[i]});
     const double points = std::max(1e-3, double(split.points[i]));
     result += variance * (w * w * kVpls / double(split.photons) + (1.0 - w) * (1.0 - w) / points);
   }

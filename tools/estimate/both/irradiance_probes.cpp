@@ -5,6 +5,7 @@
 
 #include "core/parallel.h"
 #include "core/sampling.h"
+#include "spatial/packed_disks.h"
 
 namespace bnvpl::methods::estimate::both {
 
@@ -24,7 +25,7 @@ float irradiancePerWatt(const VplTable& vpls, size_t at, size_t from) {
   const float d2 = lengthSquared(d);
   const float received = dot(d, vpls.normal[at]), sent = -dot(d, vpls.normal[from]);
   if (!(received > 0.0f && sent > 0.0f)) return 0.0f;
-  const float area = 2.0f * std::sqrt(3.0f) * vpls.radius[from] * vpls.radius[from];
+  const float area = packedDiskArea(vpls.radius[from]);
   return received * sent / (d2 * (kPi * d2 + area));
 }
 

@@ -189,7 +189,7 @@ class PointAllocation {
     }
     return std::exp(high);
   }
-  double errorAt(double photons, double lambda) const {
+  double weightedVarianceAt(double photons, double lambda) const {
     double sum = 0.0;
     for (size_t i = 0; i < vpls_.size(); ++i) sum += weight_[i] * variance(i, photons, lambda);
     return sum;
@@ -202,9 +202,9 @@ class PointAllocation {
     }
     return probes.relativeError(flux, variances);
   }
-  // Split::emissionBalance of VPL i. Photons that start with density g vary g times less than by
+  // Split::misRatio of VPL i. Photons that start with density g vary g times less than by
   // power, so that their weight by inverse variance is g / (g + balance).
-  double emissionBalance(size_t i, double photons, double points) const {
+  double misRatio(size_t i, double photons, double points) const {
     const VplStatistics& v = vpls_[i];
     if (!(points > 0.0)) return 0.0;
     return v.startDensity * points * v.photonVariance / (photons * v.pointVariance);
@@ -224,7 +224,7 @@ class PointAllocation {
 // Number of photons, the multiplier that allots points, and the weighted sum of variances that
 // results.
 struct Allocation {
-  double photons = 0.0, lambda = INFINITY, error = INFINITY;
+  double photons = 0.0, lambda = INFINITY, weightedVariance = INFINITY;
 };
 
 Allocation bestAllocation(const PointAllocation& points, double photonCost, double cost) {
@@ -232,15 +232,16 @@ Allocation bestAllocation(const PointAllocation& points, double photonCost, doub
   for (int part = 1; part <= kParts; ++part) {
     const double ofPhotons = cost * part / kParts, photons = ofPhotons / photonCost;
     const double lambda = part == kParts ? INFINITY : points.lambdaFor(photons, cost - ofPhotons);
-    const double error = points.errorAt(photons, lambda);
-    if (error < best.error) best = {photons, lambda, error};
+    const double variance = points.weightedVarianceAt(photons, lambda);
+    if (variance < best.weightedVariance) best = {photons, lambda, variance};
   }
   return best;
 }
 
 // Lowers the cost step by step, as long as the predicted error stays below that of the budget.
 Allocation smallestAllocation(const PointAllocation& points, const VplTable& vpls,
-                              const Accelerator& accel, double photonCost, const Budget& budget) {
+                              const Accelerator& accel, double photonCost,
+                              const WorkBudget& budget) {
   Allocation best = bestAllocation(points, photonCost, budget.cost);
   if (!(budget.error > 0.0)) return best;
   const IrradianceProbes probes(vpls, accel);
@@ -257,20 +258,20 @@ Allocation smallestAllocation(const PointAllocation& points, const VplTable& vpl
 }  // namespace
 
 Split splitWork(const VplTable& vpls, const Accelerator& accel, const Pilots& pilots,
-                const Budget& budget) {
+                const WorkBudget& budget) {
   const PointAllocation points(poolAllPilots(vpls, pilots));
   const Allocation best = smallestAllocation(points, vpls, accel, pilots.photonCost, budget);
   Split split;
   split.photons = std::max<uint64_t>(1, static_cast<uint64_t>(std::llround(best.photons)));
   split.points.resize(vpls.size());
-  split.emissionBalance.resize(vpls.size());
+  split.misRatio.resize(vpls.size());
   const auto photons = static_cast<double>(split.photons);
   split.cost = photons * pilots.photonCost + points.costAt(photons, best.lambda);
   split.costShare = std::min(1.0, split.cost / budget.cost);
   for (size_t i = 0; i < vpls.size(); ++i) {
     split.points[i] = static_cast<uint64_t>(std::llround(points.at(i, photons, best.lambda)));
-    split.emissionBalance[i] = static_cast<float>(
-        points.emissionBalance(i, photons, static_cast<double>(split.points[i])));
+    split.misRatio[i] =
+        static_cast<float>(points.misRatio(i, photons, static_cast<double>(split.points[i])));
   }
   return split;
 }

@@ -21,28 +21,28 @@ struct Pilots {
   double photons = 0.0;                           // photons traced
   double points = 0.0;                            // points per VPL
   double photonPower = 0.0;                       // mean power of a photon, W
-  double photonCost = 0.0;                        // cost of a photon, in the unit of pointCost
-  std::vector<double> pointCost;                  // cost of a point, one per VPL
+  double photonCost = 0.0;                        // rays of a photon
+  std::vector<double> pointCost;                  // rays of a point, one per VPL
 };
 
 struct Split {
   uint64_t photons = 0;
   std::vector<uint64_t> points;  // one per VPL
-  // One per VPL: photons that start with density g, relative to emission by power, have the weight
-  // g / (g + emissionBalance) in its flux.
-  std::vector<float> emissionBalance;
-  double cost = 0.0;             // cost of photons and points
+  // One per VPL, kappa of theory.md: the inverse variance of its paths over that of its photons.
+  // Photons that start with density g, relative to emission by power, weigh g / (g + misRatio).
+  std::vector<float> misRatio;
+  double cost = 0.0;             // cost of photons and points, in rays
   double costShare = 1.0;        // cost over that of the budget
 };
 
-struct Budget {
-  double cost = 0.0;   // maximal cost
+struct WorkBudget {
+  double cost = 0.0;   // maximal cost, in rays
   double error = 0.0;  // sufficient IrradianceProbes::relativeError(); 0: spend the whole cost
 };
 
 // Divides the budget such that the sum over VPLs of variance over local flux is minimal. Spends
 // less if that reaches budget.error.
 Split splitWork(const VplTable& vpls, const Accelerator& accel, const Pilots& pilots,
-                const Budget& budget);
+                const WorkBudget& budget);
 
 }  // namespace bnvpl::methods::estimate::both

@@ -7,7 +7,7 @@ namespace bnvpl::methods::estimate::both {
 namespace {
 
 constexpr std::string_view kCount = "split.count", kCostShare = "split.cost",
-                           kPoints = "split.points", kEmissionBalance = "split.balance";
+                           kPoints = "split.points", kMisRatio = "split.balance";
 
 }  // namespace
 
@@ -15,7 +15,7 @@ void giveSplit(const ShardSink& sink, const Split& split) {
   giveRecord(sink, kCount, 0, std::array{split.photons});
   giveRecord(sink, kCostShare, 0, std::array{split.costShare});
   giveRecord(sink, kPoints, 0, split.points);
-  giveRecord(sink, kEmissionBalance, 0, split.emissionBalance);
+  giveRecord(sink, kMisRatio, 0, split.misRatio);
 }
 
 Split takeSplit(const ShardSource& source, size_t vpls) {
@@ -24,7 +24,7 @@ Split takeSplit(const ShardSource& source, size_t vpls) {
   Split split{0, std::vector<uint64_t>(vpls), std::vector<float>(vpls)};
   takeRecord(source, kCount, 0, photons);
   takeRecord(source, kPoints, 0, split.points);
-  takeRecord(source, kEmissionBalance, 0, split.emissionBalance);
+  takeRecord(source, kMisRatio, 0, split.misRatio);
   takeRecord(source, kCostShare, 0, costShare);
   split.photons = photons[0];
   split.costShare = costShare[0];

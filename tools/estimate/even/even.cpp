@@ -1,23 +1,23 @@
 // The method of the thesis (section 3.4): a photon's flux is divided evenly among all VPLs whose
 // reach holds the hit, even through walls.
-#include "tools/estimate/photon_scatter.h"
+#include "tools/estimate/photon_deposits.h"
 
 namespace bnvpl::methods::estimate::even {
 
 namespace {
 
-void scatterHit(const PhotonScatter& scatter, const PhotonHit& hit, Rng&, PhotonSums& sums) {
+void depositEvenly(const PhotonDeposits& deposits, const PhotonHit& hit, Rng&, PhotonSums& sums) {
   uint32_t found = 0;
   ReachGrid::forEachReaching(hit.near, [&](const ReachGrid::Disk&) { ++found; });
-  if (found == 0) return scatter.tally(sums, kOutside, hit.flux);
+  if (found == 0) return deposits.tally(sums, kOutside, hit.flux);
   const Vec3 share = hit.flux * (1.0f / static_cast<float>(found));
   ReachGrid::forEachReaching(
-      hit.near, [&](const ReachGrid::Disk& d) { scatter.deposit(d.index, hit, share, sums); });
-  scatter.tally(sums, kDeposited, hit.flux);
+      hit.near, [&](const ReachGrid::Disk& d) { deposits.deposit(d.index, hit, share, sums); });
+  deposits.tally(sums, kDeposited, hit.flux);
 }
 
 EstimateResult run(const EstimateInputs& in, const Values& options) {
-  return estimateByPhotons(in, options, scatterHit);
+  return estimateByPhotons(in, options, depositEvenly);
 }
 
 }  // namespace

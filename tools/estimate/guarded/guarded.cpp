@@ -1,12 +1,12 @@
 // Deposits photons only in VPLs on a compatible surface and in sight of the hit.
-#include "tools/estimate/photon_scatter.h"
+#include "tools/estimate/photon_deposits.h"
 
 namespace bnvpl::methods::estimate::guarded {
 
 namespace {
 
 EstimateResult run(const EstimateInputs& in, const Values& options) {
-  return estimateByPhotons(in, options, scatterToOneInSight);
+  return estimateByPhotons(in, options, depositToOneInSight);
 }
 
 }  // namespace

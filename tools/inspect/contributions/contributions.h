@@ -1,4 +1,4 @@
-// The light that each VPL brings to each pixel of the film: `vpl-inspect contributions`.
+// The light that each VPL contributes to each pixel of the film: `vpl-inspect contributions`.
 #pragma once
 
 #include <cstdint>

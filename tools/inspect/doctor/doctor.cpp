@@ -6,6 +6,7 @@
 
 #include "core/files.h"
 #include "scene/surface_area.h"
+#include "spatial/packed_disks.h"
 #include "tools/common/run/progress_meter.h"
 #include "tools/common/run/run_tool.h"
 #include "tools/inspect/doctor/light_trials.h"
@@ -118,7 +119,7 @@ void describeView(const Accelerator& accel, Json& json, Findings& findings) {
 void describeVpls(const Accelerator& accel, Json& json, Findings& findings) {
   const double area = surfaceArea(accel.scene()), used = shareInUse(accel),
                depth = json["view"]["depth"].get<double>();
-  const double radius = std::sqrt(used * area / (2.0 * std::sqrt(3.0) * kUsualVpls));
+  const double radius = packedDiskRadius(used * area, kUsualVpls);
   json["vpls"] = {
       {"surface", area}, {"in_use", used}, {"count", kUsualVpls}, {"spacing", 2.0 * radius}};
   constexpr double kWide = 0.2;  // spacing over depth above which each VPL is seen

@@ -15,7 +15,7 @@ struct PlotOptions {
   DotColour colour = DotColour::Plain;
   bool showBack = false;  // draw rings for visible rows whose lit side faces away
   unsigned samples = 3;   // samples of the view per pixel and axis
-  // Light that each row brings to the film, for DotColour::Contribution.
+  // Contribution of each row to the film, for DotColour::Contribution.
   std::vector<double> contributions = {};
 };
 

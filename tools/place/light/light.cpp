@@ -2,7 +2,7 @@
 #include <array>
 
 #include "core/random_streams.h"
-#include "spatial/local_density.h"
+#include "spatial/represented_area.h"
 #include "tools/place/path_rows.h"
 #include "transport/photon_walk.h"
 
@@ -55,7 +55,7 @@ void finish(PlaceResult& result) {
   for (Vec3& f : t.firstBounceFlux) f *= 1.0f / static_cast<float>(result.paths);
   t.photons.assign(t.size(), 1);
   t.relativeError.assign(t.size(), 1.0f);
-  ShareRadii radii = shareRadii(t.position, t.normal);
+  RepresentedRadii radii = representedRadii(t.position, t.normal);
   t.radius = std::move(radii.radius);
   t.areaEstimate = radii.area;
   t.rMax = radii.rMax;

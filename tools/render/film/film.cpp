@@ -179,7 +179,7 @@ Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOpt
   }
   if (integrator.tracePhotons) {
     const uint64_t photons = uint64_t{options.spp} * film.pixels.size();
-    const auto phase = progress.before("photons", controls.shard.shareOf(photons));
+    const auto phase = progress.beginPhase("photons", controls.shard.shareOf(photons));
     if (progress) progress(film.at.splats.traced);
     addSplats(
         integrator.tracePhotons, photons, film.at.splats,

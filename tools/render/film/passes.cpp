@@ -23,7 +23,7 @@ constexpr double kFirstPreview = 0.1;   // share of the time before the first pr
 class Passes {
  public:
   Passes(const Scene& scene, const Integrator& integrator, const FilmOptions& options,
-         const Budget& budget)
+         const PassBudget& budget)
       : scene_(scene),
         integrator_(integrator),
         options_(options),
@@ -269,7 +269,7 @@ class Passes {
   const Scene& scene_;
   const Integrator& integrator_;
   const FilmOptions& options_;
-  const Budget& budget_;
+  const PassBudget& budget_;
   Tiles tiles_;
   uint64_t key_;
   PassesState state_;
@@ -283,7 +283,7 @@ class Passes {
 }  // namespace
 
 Image renderPasses(const Scene& scene, const Integrator& integrator, const FilmOptions& options,
-                   const Budget& budget, FilmStats& stats, PassesDone& done,
+                   const PassBudget& budget, FilmStats& stats, PassesDone& done,
                    const ProgressFn& progress, const WorkControls& controls,
                    const FilmPreview& preview) {
   Passes passes(scene, integrator, options, budget);

@@ -1,8 +1,8 @@
 // Renders an image by passes over the film, until a time is spent or an error is reached.
 //
-// Each pass renders an image m_k with some samples per pixel (Budget::passSpp) and its own random
-// numbers. The result is the plain mean m of all K passes. The variance between samples of one pass
-// does not give the error, as samples of a tile share a cut and are stratified. Passes are
+// Each pass renders an image m_k with some samples per pixel (PassBudget::passSpp) and its own
+// random numbers. The result is the plain mean m of all K passes. The variance between samples of
+// one pass does not give the error, as samples of a tile share a cut and are stratified. Passes are
 // independent, so the variance between passes does, for each pixel:
 //
 //   error^2 = sum over passes (m_k - m)^2 / (K (K - 1))
@@ -30,7 +30,7 @@ namespace bnvpl {
 
 inline constexpr uint32_t kPassSpp = 4;  // samples per pixel in a pass, if nothing else is asked
 
-struct Budget {
+struct PassBudget {
   // Wall-clock time since startS, of nowS(). A pass begins only if it is expected to fit.
   double timeS = INFINITY;
   double startS = nowS();
@@ -54,7 +54,7 @@ struct PassesDone {
 // Like renderFilm(), but ignores options.spp. The image depends only on the number of passes and of
 // their samples, down to its bytes. The first preview comes after a second, or a tenth of the time.
 Image renderPasses(const Scene& scene, const Integrator& integrator, const FilmOptions& options,
-                   const Budget& budget, FilmStats& stats, PassesDone& passes,
+                   const PassBudget& budget, FilmStats& stats, PassesDone& passes,
                    const ProgressFn& progress = {}, const WorkControls& controls = {},
                    const FilmPreview& preview = {});
 

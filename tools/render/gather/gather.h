@@ -48,7 +48,7 @@ struct TileReceivers : TileLayout {
 };
 
 // Fills one result for each receiver, or of methods with `pixelSum` the weighted sum of each pixel,
-// in place of its first sample. The caller has cleared them, and those of null receivers stay so.
+// in place of its first sample. Results of null receivers are empty.
 using TileGatherFn = std::function<void(const TileReceivers&, std::span<Gathered>)>;
 // Light of the VPLs at a vertex of a random path: an unbiased estimate with `draws` (> 0) VPLs. The
 // sink receives its radiance by light group.

@@ -7,7 +7,7 @@
 #include "core/cdf.h"
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "tools/render/gather/shadow_test.h"
+#include "tools/render/gather/single_vpl.h"
 
 namespace bnvpl {
 
@@ -43,7 +43,7 @@ Columns columnsAt(const GatherInputs& in, std::span<const SurfacePoint> receiver
                     std::to_string(in.vpls.size()) + " lights of VPLs",
                 "ask for fewer rows, or keep fewer VPLs with vpl-eliminate -n");
   Columns columns(in.vpls.size(), receivers.size());
-  const auto running = in.progress.before(phase, receivers.size());
+  const auto running = in.progress.beginPhase(phase, receivers.size());
   parallelFor(receivers.size(), 1, [&](size_t row) {
     const Bsdf bsdf(in.accel.scene(), receivers[row]);
     const ShadowTest test(in.accel, in.vpls, bsdf);

@@ -12,6 +12,9 @@ namespace bnvpl {
 namespace {
 
 constexpr double kCommonShare = 0.3;  // clusters found for all slices, over those of a slice
+// Part of the probability of a draw that follows the light in all rows, as a VPL that is dark in
+// the rows nearby may be bright at other points of the slice.
+constexpr double kAllRowsShare = 0.5;
 
 using Placed = PlacedPoint;
 
@@ -89,6 +92,17 @@ Columns rowsAbout(const Placed& slice, const std::vector<Placed>& slices, size_t
   return columns.inRows(std::span(order).first(std::min(order.size(), count)));
 }
 
+// Sets the probabilities, up to a factor, with which the VPLs of a cluster stand for it.
+void setShares(const Cluster& cluster, const Columns& nearby, const Columns& all,
+               std::span<double> shares) {
+  double sumNearby = 0.0, sumAll = 0.0;
+  for (const uint32_t i : cluster) sumNearby += nearby.norm(i), sumAll += all.norm(i);
+  for (const uint32_t i : cluster) {
+    shares[i] = kAllRowsShare * all.norm(i) / sumAll;
+    if (sumNearby > 0.0) shares[i] += (1.0 - kAllRowsShare) * nearby.norm(i) / sumNearby;
+  }
+}
+
 }  // namespace
 
 size_t SlicePlan::sliceOf(const SurfacePoint& point) const {
@@ -133,7 +147,11 @@ SlicePlan makeSlicePlan(const GatherInputs& in, const Values& options) {
         rowsAbout(plan.slices[s], plan.slices, options[kNeighbourSlicesOption], columns);
     const std::vector<Cluster> clusters = refinedClusters(
         common, count, local, false, [&](Cluster& c) { return splitOff(c, local); });
-    for (const Cluster& cluster : clusters) plan.draws[s].add(cluster, columns.norms(), own);
+    std::vector<double> shares(columns.size());
+    for (const Cluster& cluster : clusters) {
+      setShares(cluster, local, columns, shares);
+      plan.draws[s].add(cluster, shares, own);
+    }
   });
   return plan;
 }

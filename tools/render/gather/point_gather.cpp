@@ -1,6 +1,6 @@
 #include "tools/render/gather/point_gather.h"
 
-#include "tools/render/gather/shadow_test.h"
+#include "tools/render/gather/single_vpl.h"
 
 namespace bnvpl {
 

@@ -88,7 +88,7 @@ float pairBound(const LightNode& light, const ReceiverNode& node, const Bsdf* on
                  received, [&](Vec3 axis) { return maxCosine(toLight, Vec3{}, AxisFrame(axis)); })
            : node.bsdf.diffuse * received + node.bsdf.glossy;
   const Vec3 sent = value * light.intensity;
-  return (sent.x + sent.y + sent.z) * emitted * light.falloff(toLight.distanceSquared(Vec3{}));
+  return (sent.x + sent.y + sent.z) * emitted * light.maxFalloff(toLight.distanceSquared(Vec3{}));
 }
 
 }  // namespace bnvpl

@@ -1,6 +1,6 @@
 #include "tools/render/integrator/path_tracer.h"
 
-#include "tools/render/camera_vertex.h"
+#include "tools/render/camera_path.h"
 #include "transport/outgoing_radiance.h"
 
 namespace bnvpl {

@@ -23,8 +23,8 @@ void addDirectLight(const IntegratorInputs& in, const Values& options, const Fil
                             in.only == Only::Direct);
 }
 
-std::unique_ptr<const Caustics> makeCaustics(const IntegratorInputs& in, uint64_t photons,
-                                             uint64_t raysOfPixel, unsigned bounces) {
+std::unique_ptr<const Caustics> makeCaustics(const IntegratorInputs& in, const TileParts& tile,
+                                             uint64_t photons, uint64_t spp, unsigned bounces) {
   if (photons == 0 || in.only == Only::Direct || !hasSpecularLobes(in.accel.scene()) ||
       !in.lights.hasPower()) {
     return {};
@@ -32,9 +32,11 @@ std::unique_ptr<const Caustics> makeCaustics(const IntegratorInputs& in, uint64_
   constexpr uint64_t kTrialPhotons = 1 << 18;  // limit for a cost estimate
   const uint64_t sent = unitsToTry(in.trial, photons, kTrialPhotons);
   const CostTrial::Part part(in.trial, static_cast<double>(photons) / static_cast<double>(sent));
-  return std::make_unique<const Caustics>(in.accel, in.lights, in.filter, sent,
-                                          static_cast<float>(raysOfPixel), bounces, in.seed,
-                                          in.groups, in.progress);
+  CompetingRays rays{.ofPixel = static_cast<float>(tile.raysEach * spp),
+                     .spatialLights = tile.spatialLights};
+  if (tile.rays) rays.roughImportance = tile.rays->roughImportance();
+  return std::make_unique<const Caustics>(in.accel, in.lights, in.filter, sent, rays, bounces,
+                                          in.seed, in.groups, in.progress);
 }
 
 ControlVariateFn makeControlVariate(const IntegratorInputs& in, const FilmPoints& filmPoints) {

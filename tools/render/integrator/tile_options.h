@@ -43,9 +43,10 @@ inline uint64_t preparedSpp(const Values& options) {
 // the image shows only indirect light.
 void addDirectLight(const IntegratorInputs& in, const Values& options, const FilmRays& filmRays,
                     const FilmPoints& filmPoints, unsigned lightRays, TileParts& out);
-// Returns null if the scene cannot have caustics. `bounces`: see Caustics.
-std::unique_ptr<const Caustics> makeCaustics(const IntegratorInputs& in, uint64_t photons,
-                                             uint64_t raysOfPixel, unsigned bounces);
+// Returns null if the scene cannot have caustics. `tile` has the rays that find the same light;
+// `spp`: samples of a pixel. `bounces`: see Caustics.
+std::unique_ptr<const Caustics> makeCaustics(const IntegratorInputs& in, const TileParts& tile,
+                                             uint64_t photons, uint64_t spp, unsigned bounces);
 ControlVariateFn makeControlVariate(const IntegratorInputs& in, const FilmPoints& filmPoints);
 // Runs the pilot of --allocate.
 SampleAllocation allocationOf(const IntegratorInputs& in, const Values& options,

@@ -55,7 +55,7 @@ float errorBound(const LightNode& n, const ClusterReceiver& receiver) {
   if (n.leaf()) return 0.0f;
   const float sent = sentBound(n, receiver);
   const Vec3 at = receiver.bsdf.point().position;
-  return sent > 0.0f ? sent * n.falloff(n.bounds.distanceSquared(at)) : 0.0f;
+  return sent > 0.0f ? sent * n.maxFalloff(n.bounds.distanceSquared(at)) : 0.0f;
 }
 
 }  // namespace bnvpl

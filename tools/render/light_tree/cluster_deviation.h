@@ -82,7 +82,7 @@ inline bool surelyFar(const LightNode& n, float allowed, const Bounds& receivers
   const float light = (n.intensity.x + n.intensity.y + n.intensity.z) * brightest;
   const Vec3 gap =
       max(max(n.bounds.lower - receivers.upper, receivers.lower - n.bounds.upper), Vec3{});
-  return light * n.falloff(lengthSquared(gap)) <= allowed;
+  return light * n.maxFalloff(lengthSquared(gap)) <= allowed;
 }
 
 }  // namespace bnvpl

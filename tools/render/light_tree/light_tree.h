@@ -44,7 +44,7 @@ struct LightNode {
   // About the box of its VPLs' centres, which tells how much their light varies.
   Bounds centres() const { return {bounds.lower + Vec3(reach), bounds.upper - Vec3(reach)}; }
   // Upper bound of its VPLs' falloff, 1/m2.
-  float falloff(float distanceSquared) const {
+  float maxFalloff(float distanceSquared) const {
     return bnvpl::maxFalloff(kind, distanceSquared, clamp2);
   }
 };

@@ -3,7 +3,7 @@
 
 #include "core/parallel.h"
 #include "core/random_streams.h"
-#include "tools/render/camera_vertex.h"
+#include "tools/render/camera_path.h"
 #include "tools/render/gather/gather.h"
 
 namespace bnvpl {

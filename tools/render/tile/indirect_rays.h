@@ -95,7 +95,7 @@ void sendRays(const Accelerator& accel, const RayOrigin& from, unsigned misRays,
       BsdfSample next;
       Rng rng = Rng::stratified(key, first + k);
       if (!from.directions.sample(rng, next)) continue;
-      rays[alive] = rayOn(accel, point, next);
+      rays[alive] = spawnRay(accel, point, next);
       segments[alive] = {next.wi,
                          from.throughput * next.weight,
                          {next.pdf * static_cast<float>(misRays), point.position, LightChoice::Each,
@@ -128,6 +128,8 @@ class IndirectRays {
   virtual void send(const RayOrigin& from, unsigned count, uint32_t first, uint64_t key,
                     RayContributions& out) const = 0;
   virtual double costOfRay() const = 0;  // in the units of cost:: (sample_allocation.h)
+  // With which rays choose lobes at their first hit (chooseLobes()), or a typical value.
+  virtual float roughImportance() const { return 1.0f; }
 };
 
 }  // namespace bnvpl

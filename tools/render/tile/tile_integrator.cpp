@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "tools/render/camera_vertex.h"
+#include "tools/render/camera_path.h"
 #include "tools/render/tile/tile_indirect_rays.h"
 
 namespace bnvpl {

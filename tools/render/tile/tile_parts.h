@@ -28,7 +28,7 @@ struct TileParts {
   bool gathersForFilter = false;  // a film filter smooths their light
   bool gathersPixelSums = false;  // finds the sum over a pixel's samples
   // Adds light that VPLs leave out to all samples at once, for compensations that work by tile;
-  // `rays` are those of the others. Returns the number of its rays.
+  // those that work ray by ray have `rays`. Returns the number of its rays.
   std::function<size_t(const TileReceivers&, std::span<Gathered>)> compensateTile = {};
   size_t gatherCounters = 0;     // the counters of compensation follow those of `gather`
   bool countsContinued = false;  // its first counter is that of the rays from later vertices

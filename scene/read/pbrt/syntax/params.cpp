@@ -11,11 +11,11 @@ namespace {
 
 std::string quoted(const std::string& name) { return "'" + name + "'"; }
 
-double oneNumber(const Param& p, double least, double most) {
+double oneNumber(const Param& p, double lower, double upper) {
   if (p.numbers.size() != 1) failAt(p.place, quoted(p.name) + " must be one number");
-  if (p.numbers[0] < least || p.numbers[0] > most) {
+  if (p.numbers[0] < lower || p.numbers[0] > upper) {
     failAt(p.place, quoted(p.name) + " is " + shortestText(p.numbers[0]) + "; it must be from " +
-                        shortestText(least) + " to " + shortestText(most));
+                        shortestText(lower) + " to " + shortestText(upper));
   }
   return p.numbers[0];
 }
@@ -50,16 +50,16 @@ const Param* Params::find(const std::string& name, std::initializer_list<ParamTy
   return p;
 }
 
-double Params::number(const std::string& name, double otherwise, double least, double most) const {
+double Params::number(const std::string& name, double otherwise, double lower, double upper) const {
   const Param* p = find(name, {ParamType::Float, ParamType::Integer}, "a float");
-  return p ? oneNumber(*p, least, most) : otherwise;
+  return p ? oneNumber(*p, lower, upper) : otherwise;
 }
 
-int64_t Params::integer(const std::string& name, int64_t otherwise, int64_t least,
-                        int64_t most) const {
+int64_t Params::integer(const std::string& name, int64_t otherwise, int64_t lower,
+                        int64_t upper) const {
   const Param* p = find(name, {ParamType::Integer, ParamType::Float}, "an integer");
   if (!p) return otherwise;
-  const double number = oneNumber(*p, double(least), double(most));
+  const double number = oneNumber(*p, double(lower), double(upper));
   if (number != std::floor(number)) failAt(p->place, quoted(name) + " must be an integer");
   return static_cast<int64_t>(number);
 }

@@ -55,9 +55,9 @@ class Params {
   const Param* find(const std::string& name, std::initializer_list<ParamType> types,
                     const char* expected) const;
 
-  double number(const std::string& name, double otherwise, double least = -kMax,
-                double most = kMax) const;
-  int64_t integer(const std::string& name, int64_t otherwise, int64_t least, int64_t most) const;
+  double number(const std::string& name, double otherwise, double lower = -kMax,
+                double upper = kMax) const;
+  int64_t integer(const std::string& name, int64_t otherwise, int64_t lower, int64_t upper) const;
   bool boolean(const std::string& name, bool otherwise) const;
   std::string text(const std::string& name, const std::string& otherwise = "") const;
   FilePoint point(const std::string& name, const FilePoint& otherwise) const;

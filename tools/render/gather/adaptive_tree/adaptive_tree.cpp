@@ -5,7 +5,7 @@
 #include <cmath>
 #include <memory>
 
-#include "tools/render/gather/shadow_test.h"
+#include "tools/render/gather/single_vpl.h"
 #include "tools/render/light_tree/descend.h"
 
 namespace bnvpl::methods::gather::adaptive_tree {

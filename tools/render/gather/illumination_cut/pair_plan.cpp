@@ -8,7 +8,7 @@
 
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "tools/render/gather/shadow_test.h"
+#include "tools/render/gather/single_vpl.h"
 
 namespace bnvpl::methods::gather::illumination_cut {
 

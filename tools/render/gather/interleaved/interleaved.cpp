@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "tools/render/gather/rgb_sum.h"
-#include "tools/render/gather/shadow_test.h"
+#include "tools/render/gather/single_vpl.h"
 
 namespace bnvpl::methods::gather::interleaved {
 

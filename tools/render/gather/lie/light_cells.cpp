@@ -43,7 +43,7 @@ class CellBuilder {
     if (points_.empty()) return;
     out_.cells_.emplace_back().end = static_cast<uint32_t>(points_.size());
     std::vector<Nodes> open{{0}};
-    const auto running = in_.progress.before("cells", points_.size() * (options_.levels + 1));
+    const auto running = in_.progress.beginPhase("cells", points_.size() * (options_.levels + 1));
     for (uint32_t level = 0, first = 0; !open.empty(); ++level) {
       const auto end = static_cast<uint32_t>(out_.cells_.size());
       const bool divided = level < options_.levels && roomBelow(first, level, open);

@@ -65,7 +65,7 @@ TEST_P(MatrixCompletion, FewEntriesAreSampled) {
 // Light u v^T, half of whose rows see one half of the columns, and the others the other: rank 2.
 // One in eight of the entries without a sample is predicted wrongly.
 TEST(MatrixSeparation, FindsMostOfTheWrongPredictions) {
-  using methods::gather::matrix_completion::lowRankPart;
+  using methods::gather::matrix_completion::correctedLight;
   constexpr size_t kRows = 120, kColumns = 80;
   methods::gather::matrix_completion::PredictedMatrix m{kRows, kColumns, {}, {}, {}};
   std::vector<float> truth;
@@ -83,7 +83,7 @@ TEST(MatrixSeparation, FindsMostOfTheWrongPredictions) {
       m.light.push_back(visible != wrong ? m.limit.back() : 0.0f);
     }
   }
-  const std::vector<float> low = lowRankPart(m, 3);
+  const std::vector<float> low = correctedLight(m, 3);
   const auto errorOf = [&](const std::vector<float>& light) {
     double sum = 0.0;
     for (size_t k = 0; k < truth.size(); ++k) sum += std::fabs(double{light[k]} - truth[k]);

@@ -38,7 +38,8 @@ class Separation {
     grow(std::max<size_t>(1, fullRank() / kFirstRanks));
   }
 
-  const Vector& run() {
+  // Returns D - S, which is within 0 and the limit, where L still has the error of the iteration.
+  Vector run() {
     const double scale = std::sqrt(double{product(m_.light, m_.light)});
     double before = INFINITY;
     for (int k = 0; k < kIterations; ++k) {
@@ -48,7 +49,9 @@ class Separation {
       if (before - error < kProgress * before) grow(kRankStep);
       before = error;
     }
-    return low_;
+    Vector light = m_.light;
+    addTimes(light, sparse_, -1.0f);
+    return light;
   }
 
  private:
@@ -119,12 +122,9 @@ class Separation {
 
 }  // namespace
 
-std::vector<float> lowRankPart(const PredictedMatrix& matrix, uint64_t seed) {
+std::vector<float> correctedLight(const PredictedMatrix& matrix, uint64_t seed) {
   if (std::ranges::all_of(matrix.light, [](float x) { return x == 0.0f; })) return matrix.light;
-  Separation separation(matrix, seed);
-  Vector low = separation.run();
-  for (size_t k = 0; k < low.size(); ++k) low[k] = std::clamp(low[k], 0.0f, matrix.limit[k]);
-  return low;
+  return Separation(matrix, seed).run();
 }
 
 }  // namespace bnvpl::methods::gather::matrix_completion

@@ -18,7 +18,8 @@ struct PredictedMatrix {
   std::vector<bool> known;   // the entry is sampled, and stays
 };
 
-// The part of low rank, within 0 and the limits. The seed is that of the first rank's directions.
-std::vector<float> lowRankPart(const PredictedMatrix& matrix, uint64_t seed);
+// The light without what was predicted wrongly, D - S, within 0 and the limits. The seed is that of
+// the first rank's directions.
+std::vector<float> correctedLight(const PredictedMatrix& matrix, uint64_t seed);
 
 }  // namespace bnvpl::methods::gather::matrix_completion

@@ -93,7 +93,7 @@ void completeBySeparation(SliceMatrix& matrix, std::span<const VplDraw> draws, d
     }
     if (column.sampled() == column.rows.size() && !column.rows.empty()) matrix.countFull();
   }
-  const std::vector<float> light = complete ? m.light : lowRankPart(m, random64(key, 1, 0));
+  const std::vector<float> light = complete ? m.light : correctedLight(m, random64(key, 1, 0));
   for (size_t c = 0; c < columns.size(); ++c) {
     matrix.addAll(columns[c], [&](size_t k) {
       const size_t at = c * rows + columns[c].rows[k];

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/render/gather/shadow_test.h"
+#include "tools/render/gather/single_vpl.h"
 
 namespace bnvpl::methods::gather::matrix_completion {
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <array>
 
-#include "tools/render/gather/shadow_test.h"
 #include "tools/render/gather/shirley/bright_lights.h"
+#include "tools/render/gather/single_vpl.h"
 
 namespace bnvpl::methods::gather::shirley {
 

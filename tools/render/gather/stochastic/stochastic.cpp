@@ -5,7 +5,7 @@
 #include <array>
 #include <optional>
 
-#include "tools/render/gather/shadow_test.h"
+#include "tools/render/gather/single_vpl.h"
 #include "tools/render/light_tree/cluster_bounds.h"
 #include "tools/render/light_tree/descend.h"
 
@@ -50,7 +50,7 @@ std::optional<float> leftShare(const LightNode& left, const LightNode& right,
   const float l = sentBound(left, receiver), r = sentBound(right, receiver);
   if (!(l + r > 0.0f)) return {};
   const auto share = [&](float leftDistance2, float rightDistance2) {
-    const float a = l * left.falloff(leftDistance2), b = r * right.falloff(rightDistance2);
+    const float a = l * left.maxFalloff(leftDistance2), b = r * right.maxFalloff(rightDistance2);
     return a / (a + b);
   };
   const float far = share(farthestSquared(left.bounds, at), farthestSquared(right.bounds, at));

@@ -32,7 +32,7 @@ std::vector<float> hitRates(const GatherInputs& in, uint64_t tests) {
   }
   std::vector<float> rates(in.vpls.size(), 0.5f);
   if (seen.empty()) return rates;
-  const auto phase = in.progress.before("visibility pilot, VPLs", rates.size());
+  const auto phase = in.progress.beginPhase("visibility pilot, VPLs", rates.size());
   parallelFor(rates.size(), 16, [&](size_t i) {
     uint32_t faced = 0, hits = 0;
     for (uint64_t k = 0; k < tests; ++k) {

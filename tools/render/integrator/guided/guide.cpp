@@ -5,6 +5,7 @@
 #include "core/cdf.h"
 #include "core/parallel.h"
 #include "core/random_streams.h"
+#include "spatial/packed_disks.h"
 #include "transport/specular_path.h"
 
 namespace bnvpl {
@@ -44,7 +45,7 @@ Guide::Guide(const VplTable& lit, const Accelerator& accel, const LightSet& ligh
   const NearSurfaces near(position_, normal_, lit.radius, kSmooth);
   findRadiance(lit, near);
   regions_ = RegionGrid(position_, normal_, lit.radius);
-  const ProgressFn::Phase phase = progress.before("guiding distributions", lit.size());
+  const ProgressFn::Phase phase = progress.beginPhase("guiding distributions", lit.size());
   const uint64_t key = streamKey(seed, RandomStream::Guide);
   const uint32_t each = strata_.cells();
   std::vector<Learnt> learnt(lit.size() * each);
@@ -65,7 +66,7 @@ void Guide::findRadiance(const VplTable& lit, const NearSurfaces& near) {
     Vec3 flux;
     float area = 0.0f, albedo = 0.0f;
     near.forEach(i, [&](uint32_t k) {
-      const float share = 2.0f * std::sqrt(3.0f) * lit.radius[k] * lit.radius[k];
+      const float share = packedDiskArea(lit.radius[k]);
       flux += lit.flux[k];
       area += share;
       albedo += share * mean(lit.albedo[k]);
@@ -96,7 +97,7 @@ void Guide::learn(const Accelerator& accel, const LightSet& lights, uint64_t key
     const Vec3 towards = frame.toWorld(local);
     const SpecularPath path =
         followSpecularPath(accel, lights, from, towards, {pdfCosineHemisphere(local.z), from}, rng);
-    Vec3 found = path.emissionFirst + path.emissionLater;
+    Vec3 found = path.emissionFirst + path.directLater;
     if (path.rough) {
       const uint32_t at = regionAt(path.hit);
       if (at != kNone) {

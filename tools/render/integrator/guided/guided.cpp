@@ -94,8 +94,8 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
       controlled || in.only != Only::Indirect ? filmRays.all() : FilmPoints{};
   if (controlled) tile.control = makeControlVariate(in, filmPoints);
   addDirectLight(in, options, filmRays, filmPoints, kLightRays, tile);
-  tile.caustics = makeCaustics(in, causticPhotons(in, options),
-                               tile.raysEach * preparedSpp(options), maxBouncesOf(options));
+  tile.caustics = makeCaustics(in, tile, causticPhotons(in, options), preparedSpp(options),
+                               maxBouncesOf(options));
   const CausticStats caustics = tile.caustics ? tile.caustics->stats() : CausticStats{};
   parts->integrator =
       std::make_unique<const TileIntegrator>(in.accel, in.lights, std::move(tile), in.only);

@@ -48,13 +48,13 @@ void GuidedRays::follow(const FirstSegment& start, float expected, bool reuse,
   Rng rng = start.rng;
   SpecularLightSampling sampling{nullptr, &spatialLights_};
   if (only_ != Only::Indirect) sampling.emissionFirst = out.directGroups().times(start.throughput);
-  if (only_ != Only::Direct) sampling.emissionLater = out.indirectGroups().times(start.throughput);
+  if (only_ != Only::Direct) sampling.directLater = out.indirectGroups().times(start.throughput);
   SpecularPath vertex = followSpecularPath(accel_, lights_, *start.hit, start.direction,
                                            start.arrival, rng, sampling);
   if (only_ != Only::Indirect) out.direct += start.throughput * vertex.emissionFirst;
   if (only_ == Only::Direct) return;
   const auto add = [&](Vec3 light) { out.indirect += light, out.compensated += light; };
-  add(start.throughput * vertex.emissionLater);
+  add(start.throughput * vertex.directLater);
   if (maxBounces_ == 0 || !vertex.rough) return;
 
   const Bsdf first(accel_.scene(), vertex.hit);
@@ -135,11 +135,11 @@ LightWithPart GuidedRays::tracePath(const Bsdf& first, const FirstSegment& start
     else
       weight.part *= next.weight * (1.0f / survival);
     weight.all *= next.weight * (1.0f / survival);
-    const Ray ray = rayOn(accel_, bsdf.point(), next);
+    const Ray ray = spawnRay(accel_, bsdf.point(), next);
     vertex = followSpecularPath(accel_, lights_, ray.origin, ray.direction,
                                 {next.pdf, bsdf.point().position, LightChoice::One, lights}, rng,
                                 {nullptr, &spatialLights_, sinkTo(emission), sinkTo(emission)});
-    leaving += weight * (vertex.emissionFirst + vertex.emissionLater);
+    leaving += weight * (vertex.emissionFirst + vertex.directLater);
     for (uint32_t g = 0; g < lightGroups; ++g) {
       all.times(weight.all).add(g, emission[g]);
       part.times(weight.part).add(g, emission[g]);

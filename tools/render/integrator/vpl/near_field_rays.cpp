@@ -25,6 +25,7 @@ constexpr double kCostOfRay = 16.0;
 }  // namespace
 
 double NearFieldRays::costOfRay() const { return kCostOfRay; }
+float NearFieldRays::roughImportance() const { return kMinImportance; }
 
 void NearFieldRays::send(const RayOrigin& from, unsigned count, uint32_t first, uint64_t key,
                          RayContributions& out) const {
@@ -128,8 +129,7 @@ void NearFieldRays::follow(const FirstSegment& start, const ReachGrid::Lookup& c
     const bool first = path.isFirst();
     if (first && only_ != Only::Indirect) out.direct += path.throughput * segment.emissionFirst;
     if (only_ == Only::Direct) break;
-    path.light =
-        path.throughput * (segment.emissionLater + (first ? Vec3{} : segment.emissionFirst));
+    path.light = path.throughput * (segment.directLater + (first ? Vec3{} : segment.emissionFirst));
     Uncovered uncovered;
     if (path.choseLobes() && segment.rough) {
       uncovered = *path.atFirstHit;
@@ -166,7 +166,7 @@ void NearFieldRays::begin(Path& path, const ReachGrid::Lookup& coverLookup) cons
   SpecularLightSampling sampling{nullptr, spatialLights_};
   if (only_ != Only::Indirect)
     sampling.emissionFirst = path.out.directGroups().times(path.throughput);
-  if (only_ != Only::Direct) sampling.emissionLater = path.lightSink().times(path.throughput);
+  if (only_ != Only::Direct) sampling.directLater = path.lightSink().times(path.throughput);
   path.segment = followSpecularPath(accel_, lights_, hit, path.start.direction, path.start.arrival,
                                     path.rng, sampling, path.roughImportance);
 }

@@ -32,6 +32,7 @@ class NearFieldRays : public IndirectRays {
   void send(const RayOrigin& from, unsigned count, uint32_t first, uint64_t key,
             RayContributions& out) const override;
   double costOfRay() const override;
+  float roughImportance() const override;
 
  private:
   struct Path;

@@ -157,9 +157,8 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
                                                       tile.spatialLights, in.only);
   }
   if (indirect) tile.reuse = static_cast<unsigned>(options[kReuseOption]);
-  tile.caustics =
-      makeCaustics(in, causticPhotons(in, options), tile.raysEach * preparedSpp(options),
-                   /*bounces=*/0);  // VPLs carry the light of further bounces
+  tile.caustics = makeCaustics(in, tile, causticPhotons(in, options), preparedSpp(options),
+                               /*bounces=*/0);  // VPLs carry the light of further bounces
   const CausticStats caustics = tile.caustics ? tile.caustics->stats() : CausticStats{};
   parts->integrator =
       std::make_unique<const TileIntegrator>(in.accel, in.lights, std::move(tile), in.only);

@@ -95,7 +95,7 @@ SampleAllocation findAllocation(const Scene& scene, const PixelFilter& filter, u
   const Tiles tiles(scene.film);
   const size_t count = std::min(kPilotTiles, tiles.count());
   const uint64_t key = streamKey(seed, RandomStream::Allocation);
-  const auto phase = progress.before("sample allocation pilot, tiles", count);
+  const auto phase = progress.beginPhase("sample allocation pilot, tiles", count);
   std::vector<PilotTile> pilot(count);
   parallelFor(count, 1, [&](size_t k) {
     // A random tile of the k-th of `count` equal parts of the film.

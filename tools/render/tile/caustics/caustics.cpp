@@ -14,14 +14,14 @@
 namespace bnvpl {
 
 Caustics::Caustics(const Accelerator& accel, const LightSet& lights, const PixelFilter& filter,
-                   uint64_t photons, float raysOfPixel, unsigned bounces, uint64_t seed,
+                   uint64_t photons, const CompetingRays& rays, unsigned bounces, uint64_t seed,
                    uint32_t groups, const ProgressFn& progress)
     : accel_(accel),
       lights_(lights),
       filter_(filter),
       photons_(photons),
       key_(streamKey(seed, RandomStream::Caustics)),
-      raysOfPixel_(raysOfPixel),
+      rays_(rays),
       bounces_(bounces),
       width_(accel.scene().film.width),
       light_(size_t{width_} * accel.scene().film.height),
@@ -32,7 +32,7 @@ Caustics::Caustics(const Accelerator& accel, const LightSet& lights, const Pixel
   learnEmission(streamKey(seed, RandomStream::CausticEmission), progress);
   chooseEmitters(streamKey(seed, RandomStream::CausticPilot), progress);
   SplatProgress done;
-  const auto phase = progress.before("caustic photons", photons);
+  const auto phase = progress.beginPhase("caustic photons", photons);
   addSplats(
       [&](uint64_t begin, uint64_t end, Splats& out) {
         for (uint64_t i = begin; i < end; ++i) follow(key_, i, photons, out);
@@ -44,13 +44,13 @@ Caustics::Caustics(const Accelerator& accel, const LightSet& lights, const Pixel
 // The target is the light of a caustic photon on the film, and the proxy that of any photon. Until
 // the guide is there, the weights of MIS are those of photons by power.
 void Caustics::learnEmission(uint64_t key, const ProgressFn& progress) {
-  const PilotEstimator estimate = [&](const Emission& e, const PhotonStart& start, Rng& rng,
+  const PilotEstimator estimate = [&](const EmissionSample& e, const PhotonStart& start, Rng& rng,
                                       bool withProxy) {
     PilotContribution contribution;
     Splats splats;
     const Vec3 flux = start.flux * (1.0f / static_cast<float>(photons_));
     const Vec3 lens = lensPoint(rng);
-    trace({e.light, 1.0f, start, flux, lights_.hittable(e.light), lens}, rng, splats);
+    trace({e, 1.0f, start, flux, lights_.hittable(e.light), lens}, rng, splats);
     for (const Splat& splat : splats.list) contribution.target += double{mean(splat.radiance)};
     if (!withProxy) return contribution;
     constexpr unsigned kProxyBounces = 4;
@@ -79,7 +79,7 @@ void Caustics::chooseEmitters(uint64_t key, const ProgressFn& progress) {
     double sum = 0.0, squares = 0.0;
   };
   std::vector<std::map<uint64_t, SplatMoments>> chunks((count + kChunk - 1) / kChunk);
-  const auto phase = progress.before("caustic pilot, photons", count);
+  const auto phase = progress.beginPhase("caustic pilot, photons", count);
   parallelFor(chunks.size(), 1, [&](size_t c) {
     Splats splats;
     const uint64_t begin = c * kChunk, end = std::min(count, begin + kChunk);
@@ -132,19 +132,24 @@ Vec3 Caustics::lensPoint(Rng& rng) const {
 }
 
 PhotonMis Caustics::sharedBy(float samplesPerArea) const {
-  return {&lights_, raysOfPixel_ * samplesPerArea, static_cast<float>(photons_),
-          chosen_ ? &dense_ : nullptr, &guide_};
+  return {.lights = &lights_,
+          .rays = rays_.ofPixel * samplesPerArea,
+          .photons = static_cast<float>(photons_),
+          .lamps = chosen_ ? &dense_ : nullptr,
+          .guide = &guide_,
+          .roughImportance = rays_.roughImportance};
 }
 
 uint64_t Caustics::follow(uint64_t key, uint64_t index, uint64_t count, Splats& out) const {
   Rng rng(key, index);
   const double u{rng.next()};
-  const Emission e = guide_.draw(guide_.guides() ? (double(index) + u) / double(count) : u, rng);
+  const EmissionSample e =
+      guide_.draw(guide_.guides() ? (double(index) + u) / double(count) : u, rng);
   const float guided = guide_.density(e);
   const double probability = double{lights_.pickProbability(e.light)} * double{guided};
   if (!(probability > 0.0)) return kNoEmitter;
-  Photon photon{e.light,       guided, lights_.emit(e.light, e.at), {}, lights_.hittable(e.light),
-                lensPoint(rng)};
+  Photon photon{
+      e, guided, lights_.emit(e.light, e.at), {}, lights_.hittable(e.light), lensPoint(rng)};
   const uint64_t lamp =
       photon.hittable ? emitterOf(lights_, e.light, -photon.start.direction) : kNoEmitter;
   if (lamp == kNoEmitter ? !chosen_ : chosen_ && !std::ranges::binary_search(dense_, lamp))
@@ -154,6 +159,34 @@ uint64_t Caustics::follow(uint64_t key, uint64_t index, uint64_t count, Splats& 
   return lamp;
 }
 
+float Caustics::shadowRayRatio(const Bsdf& vertex, const Photon& photon) const {
+  const SurfacePoint& point = vertex.point();
+  const LightPlace place{photon.emission.light, {photon.emission.at[0], photon.emission.at[1]}};
+  LightSample sample;
+  if (!lights_.sampleDirect(place.light, point.position, place.at.x, place.at.y, sample))
+    return 0.0f;
+  const LearnedStrata strata =
+      rays_.spatialLights ? rays_.spatialLights->at(point.position, point.ng) : LearnedStrata{};
+  const float rays =
+      strata.all ? strata.density(place) : shadowRaysTo(lights_, place.light, LightChoice::One);
+  return PhotonMis::shadowRayRatio(sample.pdf * rays,
+                                   vertex.pdf(LobeGroup::Specular, -photon.start.direction));
+}
+
+// Rays see the vertex from where the photon goes.
+void Caustics::addVertex(const Bsdf& vertex, Vec3 wi, bool countsShadowRays, const Photon& photon,
+                         RaysOfWay& rays) const {
+  rays.later *= rays.lastLater;
+  rays.last = rays.lastLater = 1.0f;
+  if (!photon.hittable || vertex.transmits() || !(vertex.hasRough() || countsShadowRays)) return;
+  SurfacePoint point = vertex.point();
+  point.wo = wi;
+  const Bsdf seen(accel_.scene(), point);
+  rays.last = PhotonMis::specularProbability(seen, rays_.roughImportance);
+  rays.lastLater = PhotonMis::specularProbability(seen, 1.0f);
+  if (countsShadowRays) rays.shadowRays = shadowRayRatio(seen, photon);
+}
+
 // Photons always take the specular lobes, as light over rough ones is not wanted. So every photon
 // carries the light that even a weakly reflecting coat reflects.
 void Caustics::trace(const Photon& photon, Rng& rng, Splats& out) const {
@@ -161,13 +194,14 @@ void Caustics::trace(const Photon& photon, Rng& rng, Splats& out) const {
   Ray next{photon.start.origin, photon.start.direction};
   SurfacePoint hit;
   bool hidden = false;  // whether paths from the camera cannot find this light
+  RaysOfWay rays;
   for (unsigned specularBounces = 0; specularBounces <= kMaxSpecular && isFinite(flux);
        ++specularBounces) {
     accel_.closestHit(next.origin, next.direction, hit);
     if (hit.triangle == kNone) return;
     const Bsdf bsdf(accel_.scene(), hit);
     if (specularBounces > 0 && bsdf.hasRough()) {
-      connect(bsdf.point(), flux * bsdf.photonShadingFactor(), photon, out);
+      connect(bsdf.point(), flux * bsdf.photonShadingFactor(), photon, rays, out);
       if (hidden && bounces_ > 0) followBounces(bsdf, flux, photon, rng, out);
     }
     if (!(bsdf.specularProbability() > 0.0f)) return;
@@ -176,6 +210,7 @@ void Caustics::trace(const Photon& photon, Rng& rng, Splats& out) const {
                        next))
       return;
     flux *= sample.weight;
+    addVertex(bsdf, sample.wi, specularBounces == 0 && sample.pdf > 0.0f, photon, rays);
     if (specularBounces == 0) {
       hidden = !photon.hittable && sample.pdf == 0.0f;  // by a perfect lobe
       continue;
@@ -199,26 +234,27 @@ void Caustics::followBounces(const Bsdf& bsdf, Vec3 flux, const Photon& photon, 
   for (SurfacePoint hit; walk.goesOn();) {
     accel_.closestHit(walk.next().origin, walk.next().direction, hit);
     walk.advance(accel_, hit, [&](const Bsdf& at, Vec3 arriving, bool) {
-      connect(at.point(), arriving, photon, out);
+      connect(at.point(), arriving, photon, {}, out);
     });
   }
   rng = walk.rng();
 }
 
 void Caustics::connect(const SurfacePoint& vertex, Vec3 flux, const Photon& photon,
-                       Splats& out) const {
+                       const RaysOfWay& rays, Splats& out) const {
   static const PixelFilter kPixel;
   // Pilots count photons, so each of theirs belongs to one pixel.
   const PixelFilter& filter = chosen_ ? filter_ : kPixel;
   const auto film = connectToFilm(accel_, vertex, photon.lens, filter);
   if (!film) return;
-  const float share =
-      1.0f -
-      sharedBy(film->perArea).rayWeight(photon.light, -photon.start.direction, photon.guided);
+  PhotonMis mis = sharedBy(film->perArea);
+  mis.rays *= rays.probability();
+  const float share = 1.0f - mis.rayWeight(photon.emission.light, -photon.start.direction,
+                                           photon.guided, rays.shadowRays);
   const Vec3 radiance = flux * film->value * (film->perArea * share);
   if (!isFinite(radiance)) return;
   forPixelsAt(accel_.scene().film, filter, film->at, [&](uint32_t pixel, float value) {
-    out.list.push_back({pixel, radiance * value, lights_.group(photon.light)});
+    out.list.push_back({pixel, radiance * value, lights_.group(photon.emission.light)});
   });
 }
 

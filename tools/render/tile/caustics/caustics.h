@@ -13,8 +13,17 @@
 #include "tools/render/splat/splat.h"
 #include "transport/direct_light.h"
 #include "transport/emission_guide.h"
+#include "transport/spatial_light_sampler.h"
 
 namespace bnvpl {
+
+// Rays for indirect light from what the camera sees.
+struct CompetingRays {
+  float ofPixel = 0.0f;          // their number
+  float roughImportance = 1.0f;  // IndirectRays::roughImportance()
+  // Light sampling of their specular vertices; null: by power.
+  const SpatialLightSampler* spatialLights = nullptr;
+};
 
 // Photons pass at least one specular vertex and nothing else, and are connected with the camera at
 // the first rough one. They share the light of lamps and sky with near-field rays by MIS; lights
@@ -32,12 +41,11 @@ namespace bnvpl {
 // Immutable and thread-safe.
 class Caustics {
  public:
-  // `photons`: > 0; the lights have power. `raysOfPixel`: near-field rays from each pixel, which
-  // find the same light. `bounces`: rough vertices after the first. `groups`: light groups to tell
-  // apart. Borrows accel and lights.
+  // `photons`: > 0; the lights have power. `rays` find the same light. `bounces`: rough vertices
+  // after the first. `groups`: light groups to tell apart. Borrows accel, lights and those of rays.
   Caustics(const Accelerator& accel, const LightSet& lights, const PixelFilter& filter,
-           uint64_t photons, float raysOfPixel, unsigned bounces, uint64_t seed, uint32_t groups,
-           const ProgressFn& progress);
+           uint64_t photons, const CompetingRays& rays, unsigned bounces, uint64_t seed,
+           uint32_t groups, const ProgressFn& progress);
 
   const PhotonLight& at(uint32_t x, uint32_t y) const { return light_[size_t{y} * width_ + x]; }
   // Parameters of MIS with rays that leave a point that is directly visible from `origin`, the
@@ -61,25 +69,39 @@ class Caustics {
   uint64_t follow(uint64_t key, uint64_t index, uint64_t count, Splats& out) const;
   // A photon that starts. `flux` is that of the one photon of many.
   struct Photon {
-    size_t light;
+    EmissionSample emission;
     float guided;  // density of its emission, relative to emission by power
     PhotonStart start;
     Vec3 flux;
     bool hittable;  // whether rays can hit the light
     Vec3 lens;      // the point of the lens with which its vertices are connected
   };
+  // What MIS needs of rays that come the photon's way from its other end (PhotonMis). Its last
+  // vertex is their first.
+  struct RaysOfWay {
+    float later = 1.0f;       // probability of specular lobes at all vertices but the last
+    float last = 1.0f;        // that at the last, if it is the rays' first
+    float lastLater = 1.0f;   // that at the last, if others follow
+    float shadowRays = 0.0f;  // ratio to BSDF rays at the photon's first vertex
+    float probability() const { return later * last; }
+  };
+  // Adds a specular vertex from which the photon goes on in the direction wi.
+  void addVertex(const Bsdf& vertex, Vec3 wi, bool countsShadowRays, const Photon& photon,
+                 RaysOfWay& rays) const;
+  float shadowRayRatio(const Bsdf& vertex, const Photon& photon) const;
   // Follows a photon through specular vertices.
   void trace(const Photon& photon, Rng& rng, Splats& out) const;
   // Follows the photon from a rough vertex, by its rough lobes.
   void followBounces(const Bsdf& bsdf, Vec3 flux, const Photon& photon, Rng& rng,
                      Splats& out) const;
-  void connect(const SurfacePoint& vertex, Vec3 flux, const Photon& photon, Splats& out) const;
+  void connect(const SurfacePoint& vertex, Vec3 flux, const Photon& photon, const RaysOfWay& rays,
+               Splats& out) const;
 
   const Accelerator& accel_;
   const LightSet& lights_;
   PixelFilter filter_;
   uint64_t photons_, key_;
-  float raysOfPixel_;
+  CompetingRays rays_;
   unsigned bounces_;
   uint32_t width_;
   std::vector<uint64_t> dense_;  // lamps with enough photons, ascending

@@ -6,6 +6,7 @@
 #include "core/parallel.h"
 #include "core/sampling.h"
 #include "spatial/near_surfaces.h"
+#include "spatial/packed_disks.h"
 
 namespace bnvpl {
 
@@ -26,7 +27,7 @@ IrradianceField::IrradianceField(const VplTable& lit, const VplGroups& groups)
     Vec3 flux, reflected;
     const auto own = std::span(byGroup_).subspan(i * groups_, groups_);
     near.forEach(i, [&](uint32_t k) {
-      const float area = 2.0f * std::sqrt(3.0f) * lit.radius[k] * lit.radius[k];
+      const float area = packedDiskArea(lit.radius[k]);
       flux += lit.flux[k] - lit.firstBounceFlux[k];
       for (uint32_t g = 0; g < groups_; ++g) {
         const size_t at = size_t{k} * groups_ + g;

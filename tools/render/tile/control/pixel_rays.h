@@ -7,7 +7,7 @@
 
 #include "core/random.h"
 #include "core/sampling.h"
-#include "tools/render/camera_vertex.h"
+#include "tools/render/camera_path.h"
 #include "tools/render/gather/gather.h"
 #include "tools/render/sample.h"
 #include "tools/render/tile_dimensions.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/render/camera_vertex.h"
+#include "tools/render/camera_path.h"
 #include "tools/render/tile/allocation/parity_pattern.h"
 #include "transport/spatial_light_sampler.h"
 #include "transport/walk.h"
@@ -29,7 +29,7 @@ struct DirectSamples::RandomNumbers {
 };
 
 DirectSamples::Light& DirectSamples::Light::operator+=(const Light& other) {
-  emission += other.emission, met += other.met;
+  emission += other.emission, onCameraPath += other.onCameraPath;
   byLight += other.byLight, byBsdf += other.byBsdf;
   return *this;
 }
@@ -37,13 +37,13 @@ DirectSamples::Light& DirectSamples::Light::operator+=(const Light& other) {
 DirectSamples::Light DirectSamples::sample(uint32_t x, uint32_t y, const Rays& rays,
                                            const RandomNumbers& numbers, uint32_t index,
                                            const PixelFilter::Turn& turn, RadianceSample* layers,
-                                           const SampleGroups& met,
+                                           const SampleGroups& onCameraPath,
                                            const LightGroupSink& lit) const {
   Rng rng = Rng::stratified(numbers.path, index);
   const PixelFilter::Sample at = filter_.sample(rng.nextPoint(), turn);
   RadianceSample seen;
   const SpecularPath path = traceCameraPath(accel_, lights_, x, y, at, rng, seen,
-                                            {rays.lights.strata, spatialLights_}, met);
+                                            {rays.lights.strata, spatialLights_}, onCameraPath);
   Light light{seen.emission, seen.direct, {}, {}};
   if (layers) *layers = seen;
   if (!path.rough) return light;
@@ -80,7 +80,7 @@ Vec3 DirectSamples::bsdfRay(const Bsdf& bsdf, Vec3 throughput, const Rays& rays,
                         learned,
                         {},
                         lit.times(throughput * next.weight * (1.0f / rays.bsdf))};
-  const Ray ray = rayOn(accel_, bsdf.point(), next);
+  const Ray ray = spawnRay(accel_, bsdf.point(), next);
   SurfacePoint hit;
   const Vec3 emission = accel_.closestHit(ray.origin, ray.direction, hit)
                             ? emissionHit(lights_, hit, arrival)
@@ -201,9 +201,9 @@ void DirectSamples::add(const TileSamples& tile, uint32_t pixel, const Rays& ray
     for (unsigned k = 0; k < count; ++k) {
       RadianceSample* layers =
           alone_ && out.count + k == 0 ? &tile.samples[s * tile.pixels + pixel].radiance : nullptr;
-      const SampleGroups& met = tile.samples[s * tile.pixels + pixel].groups;
-      const LightGroupSink lit{met.sums ? &out.lit[s * met.count] : nullptr};
-      const Light light = sample(x, y, rays, numbers, index++, turn, layers, met, lit);
+      const SampleGroups& onCameraPath = tile.samples[s * tile.pixels + pixel].groups;
+      const LightGroupSink lit{onCameraPath.sums ? &out.lit[s * onCameraPath.count] : nullptr};
+      const Light light = sample(x, y, rays, numbers, index++, turn, layers, onCameraPath, lit);
       ++turn.index;
       out.sums[s] += light;
       moments.add(light.all());
@@ -228,7 +228,7 @@ double DirectSamples::render(const TileSamples& tile, std::span<const SpecularPa
     for (size_t s = 0; s < perPixel; ++s) {
       const size_t i = s * tile.pixels + p;
       pixels[p].sums[s] = {
-          paths[i].emissionFirst, paths[i].emissionFirst + paths[i].emissionLater, {}, {}};
+          paths[i].emissionFirst, paths[i].emissionFirst + paths[i].directLater, {}, {}};
       moments[p].light += tile.samples[i].radiance.indirect * (1.0f / static_cast<float>(perPixel));
     }
     add(tile, p, rays, allocated ? (count + 1) / 2 : count, pixels[p], moments[p]);
@@ -264,7 +264,7 @@ void DirectSamples::store(const TileSamples& tile, uint32_t pixel, const Learned
     const Light& sum = from.sums[s];
     RadianceSample& out = tile.samples[s * tile.pixels + pixel].radiance;
     const SampleGroups& groups = tile.samples[s * tile.pixels + pixel].groups;
-    out.direct = sum.met, out.emission = sum.emission;
+    out.direct = sum.onCameraPath, out.emission = sum.emission;
     if (visibleEmission_) {
       visibleEmission_->average(out, cameraRays, tile, pixel,
                                 tile.firstSample + static_cast<uint32_t>(s),

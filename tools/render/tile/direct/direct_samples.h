@@ -46,10 +46,10 @@ class DirectSamples {
   // The direct light of a sample, or a sum over samples.
   struct Light {
     Vec3 emission;  // directly visible emission
-    Vec3 met;       // on the camera path: `emission`, and light at specular vertices
+    Vec3 onCameraPath;  // on the camera path: `emission`, and light at specular vertices
     // Light that the shading point scatters, by shadow rays and by BSDF rays.
     Vec3 byLight, byBsdf;
-    Vec3 all() const { return met + byLight + byBsdf; }
+    Vec3 all() const { return onCameraPath + byLight + byBsdf; }
     Light& operator+=(const Light& other);
   };
   // Rays from a shading point.
@@ -59,11 +59,11 @@ class DirectSamples {
   };
   struct RandomNumbers;
   // One direct sample of a pixel, the index-th by `numbers`. `turn`: see PixelFilter. `layers`:
-  // receives depth, normal and albedo; may be null. `met` and `lit` receive the light by group that
-  // the camera path meets and that the shading point scatters.
+  // receives depth, normal and albedo; may be null. `onCameraPath` and `lit` receive the light by
+  // group that the camera path meets and that the shading point scatters.
   Light sample(uint32_t x, uint32_t y, const Rays& rays, const RandomNumbers& numbers,
                uint32_t index, const PixelFilter::Turn& turn, RadianceSample* layers = nullptr,
-               const SampleGroups& met = {}, const LightGroupSink& lit = {}) const;
+               const SampleGroups& onCameraPath = {}, const LightGroupSink& lit = {}) const;
   Vec3 bsdfRay(const Bsdf& bsdf, Vec3 throughput, const Rays& rays, const LearnedLight& learned,
                Rng& rng, const LightGroupSink& lit) const;
   struct Pixel;

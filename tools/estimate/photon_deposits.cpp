@@ -1,4 +1,4 @@
-#include "tools/estimate/photon_scatter.h"
+#include "tools/estimate/photon_deposits.h"
 
 #include <tbb/enumerable_thread_specific.h>
 
@@ -15,26 +15,25 @@ namespace bnvpl {
 
 namespace {
 
-constexpr uint64_t kPhotonsPerRange = 4096;
 constexpr std::string_view kPhotonWork = "photons", kPhotonPointsWork = "emit-points";
 constexpr uint64_t rangesOf(uint64_t photons) {
   return (photons + kPhotonsPerRange - 1) / kPhotonsPerRange;
 }
 
-void fillTable(VplTable& vpls, const PhotonSums& sums, const PhotonScatter& scatter) {
-  beginLit(vpls, scatter.radius());
+void fillTable(VplTable& vpls, const PhotonSums& sums, const PhotonDeposits& deposits) {
+  beginLit(vpls, deposits.radius());
   for (size_t i = 0; i < vpls.size(); ++i) {
     const VplSum& s = sums.vpl[i];
     double sum = 0.0;
     for (size_t c = 0; c < 3; ++c) {
-      const double value = scatter.fixed().decode(s.flux[c]);
+      const double value = deposits.fixed().decode(s.flux[c]);
       vpls.flux[i][c] = static_cast<float>(value);
       sum += value / 3.0;
-      vpls.firstBounceFlux[i][c] = static_cast<float>(scatter.fixed().decode(s.firstBounce[c]));
+      vpls.firstBounceFlux[i][c] = static_cast<float>(deposits.fixed().decode(s.firstBounce[c]));
     }
     vpls.photons[i] = s.photons;
     vpls.relativeError[i] =
-        sum > 0.0 ? static_cast<float>(std::sqrt(scatter.variance(s)) / sum) : 0.0f;
+        sum > 0.0 ? static_cast<float>(std::sqrt(deposits.variance(s)) / sum) : 0.0f;
   }
 }
 
@@ -52,8 +51,8 @@ EmitPoints emitPointsOfShards(const ShardSource& source, EmitPoints all) {
 
 }  // namespace
 
-EnergyAccount accountOf(const PhotonSums& sums, const PhotonScatter& scatter, uint64_t photons) {
-  const auto watts = [&](Tally t) { return scatter.fixed().decode(sums.tally[t]); };
+EnergyAccount accountOf(const PhotonSums& sums, const PhotonDeposits& deposits, uint64_t photons) {
+  const auto watts = [&](Tally t) { return deposits.fixed().decode(sums.tally[t]); };
   EnergyAccount a;
   a.emitted = watts(kEmitted);
   a.escaped = watts(kEscaped);
@@ -75,7 +74,7 @@ namespace {
 
 PhotonSums sumsOfShards(const EstimateInputs& in, const PhotonRun& run) {
   const ShardSource& source = *in.controls.source;
-  const size_t vpls = in.vpls.size(), groups = run.scatter.groups();
+  const size_t vpls = in.vpls.size(), groups = run.deposits.groups();
   PhotonSums sums = sumsOf(source.sums(kPhotonWork, integersFor(vpls, groups)), vpls, groups);
   sums.points = emitPointsOfShards(source, EmitPoints(in.vpls, run.emitPoints, mix64(run.key)));
   return sums;
@@ -93,7 +92,7 @@ PhotonStart startOf(const LightSet& lights, const PhotonRun& run, uint64_t photo
     return start;
   }
   const auto total = static_cast<double>(run.shares.total());
-  const Emission e =
+  const EmissionSample e =
       run.guide->draw((static_cast<double>(photon) + double{rng.next()}) / total, rng);
   light = e.light;
   density = run.guide->density(e);
@@ -105,7 +104,7 @@ PhotonStart startOf(const LightSet& lights, const PhotonRun& run, uint64_t photo
 
 }  // namespace
 
-PhotonSums tracePhotons(const EstimateInputs& in, const PhotonRun& run, const ScatterRule& rule) {
+PhotonSums tracePhotons(const EstimateInputs& in, const PhotonRun& run, const DepositRule& rule) {
   const PhotonShares& shares = run.shares;
   const ProgressFn& progress = in.progress;
   const WorkControls& controls = in.controls;
@@ -113,13 +112,13 @@ PhotonSums tracePhotons(const EstimateInputs& in, const PhotonRun& run, const Sc
   const auto fresh = [&] {
     PhotonSums s;
     s.vpl.resize(in.vpls.size());
-    s.groups.resize(in.vpls.size() * run.scatter.groups());
+    s.groups.resize(in.vpls.size() * run.deposits.groups());
     s.points = EmitPoints(in.vpls, run.emitPoints, mix64(run.key));
     return s;
   };
   tbb::enumerable_thread_specific<PhotonSums> perThread(fresh);
   const auto trace = [&](uint64_t begin, uint64_t end, PhotonSums& sums) {
-    PhotonBatch batch(in.accel, run.scatter, rule);
+    PhotonBatch batch(in.accel, run.deposits, rule);
     uint64_t photon = begin;
     batch.follow(
         [&](PhotonWalk& walk, bool& hittable, uint32_t& group, float& density) {
@@ -130,7 +129,7 @@ PhotonSums tracePhotons(const EstimateInputs& in, const PhotonRun& run, const Sc
           hittable = in.lights.hittable(light);
           group = in.lights.group(light);
           walk = PhotonWalk(start, run.maxBounces, rng);
-          if (walk.goesOn()) run.scatter.tally(sums, kEmitted, start.flux);
+          if (walk.goesOn()) run.deposits.tally(sums, kEmitted, start.flux);
           return true;
         },
         sums);
@@ -169,23 +168,23 @@ std::string finishedState(const PhotonSums& sums, uint64_t photons) {
   return encode(std::vector<uint8_t>(rangesOf(photons), 1), sums);
 }
 
-void scatterToOneInSight(const PhotonScatter& scatter, const PhotonHit& hit, Rng& rng,
+void depositToOneInSight(const PhotonDeposits& deposits, const PhotonHit& hit, Rng& rng,
                          PhotonSums& sums) {
   const Coverage::Found found =
-      scatter.coverage().pick(hit.point.position, hit.point.ng, hit.near, rng);
+      deposits.coverage().pick(hit.point.position, hit.point.ng, hit.near, rng);
   sums.guardRays += found.rays;
   if (found.vpl) {
-    scatter.deposit(*found.vpl, hit, hit.flux, sums);
-    return scatter.tally(sums, kDeposited, hit.flux);
+    deposits.deposit(*found.vpl, hit, hit.flux, sums);
+    return deposits.tally(sums, kDeposited, hit.flux);
   }
-  scatter.tally(sums,
-                found.miss == Coverage::Miss::Outside        ? kOutside
-                : found.miss == Coverage::Miss::Incompatible ? kIncompatible
-                                                             : kHidden,
-                hit.flux);
+  deposits.tally(sums,
+                 found.miss == Coverage::Miss::Outside        ? kOutside
+                 : found.miss == Coverage::Miss::Incompatible ? kIncompatible
+                                                              : kHidden,
+                 hit.flux);
 }
 
-PhotonScatter::PhotonScatter(const EstimateInputs& in, float radius, uint64_t photons)
+PhotonDeposits::PhotonDeposits(const EstimateInputs& in, float radius, uint64_t photons)
     : radius_(radius),
       groups_(in.accel.scene().lightGroupCount()),
       photonPower_(double{mean(in.lights.totalPower())} / static_cast<double>(photons)),
@@ -206,9 +205,10 @@ int64_t roundedAtRandom(double value, Vec3 at) {
 
 }  // namespace
 
-void PhotonScatter::deposit(uint32_t vpl, const PhotonHit& hit, Vec3 flux, PhotonSums& sums) const {
-  if (!emissionBalance_.empty() && !hit.onlyPhotons)
-    flux *= hit.density / (hit.density + emissionBalance_[vpl]);
+void PhotonDeposits::deposit(uint32_t vpl, const PhotonHit& hit, Vec3 flux,
+                             PhotonSums& sums) const {
+  if (!misRatios_.empty() && !hit.onlyPhotons)
+    flux *= hit.density / (hit.density + misRatios_[vpl]);
   VplSum& s = sums.vpl[vpl];
   for (size_t c = 0; c < 3; ++c) {
     const int64_t units = fixed_.encode(double{flux[c]});
@@ -232,7 +232,7 @@ void PhotonScatter::deposit(uint32_t vpl, const PhotonHit& hit, Vec3 flux, Photo
   ++s.photons;
 }
 
-VplGroups PhotonScatter::groupFlux(const PhotonSums& sums) const {
+VplGroups PhotonDeposits::groupFlux(const PhotonSums& sums) const {
   VplGroups out(sums.vpl.size(), groups_);
   for (size_t i = 0; i < sums.groups.size(); ++i) {
     for (size_t c = 0; c < 3; ++c) {
@@ -244,23 +244,23 @@ VplGroups PhotonScatter::groupFlux(const PhotonSums& sums) const {
 }
 
 EstimateResult estimateByPhotons(const EstimateInputs& in, const Values& options,
-                                 const ScatterRule& rule) {
+                                 const DepositRule& rule) {
   in.lights.requirePower();
   const PhotonShares shares(in.lights, options[kPhotonsOption]);
-  const PhotonScatter scatter(in, options.real32(kRadiusOption), shares.total());
+  const PhotonDeposits deposits(in, options.real32(kRadiusOption), shares.total());
   const auto maxBounces = static_cast<unsigned>(options[kPhotonBouncesOption]);
   const LearnedEmission emission = learnPhotonEmission(in, options, maxBounces, shares.total());
   const PhotonRun run{streamKey(options[kSeedOption], RandomStream::Photons),
                       options[kEmitPointsOption],
                       maxBounces,
                       shares,
-                      scatter,
+                      deposits,
                       &emission.guide};
   const PhotonSums sums = tracePhotons(in, run, rule);
-  EstimateResult result{in.vpls, accountOf(sums, scatter, shares.total())};
+  EstimateResult result{in.vpls, accountOf(sums, deposits, shares.total())};
   result.useful = emission.useful;
-  fillTable(result.table, sums, scatter);
-  finishGroups(scatter.groupFlux(sums), result.table);
+  fillTable(result.table, sums, deposits);
+  finishGroups(deposits.groupFlux(sums), result.table);
   sums.points.fill(result.table);
   return result;
 }

@@ -19,23 +19,23 @@ namespace bnvpl {
 // positive share. If all points coincide, each share is their squared distance from the origin, or
 // 1 at the origin. `rows` selects points, with one result each; if empty, all points are selected
 // in order. `progress` counts them.
-std::vector<float> surfaceShares(std::span<const Vec3> position, std::span<const Vec3> normal,
-                                 unsigned k, const KdTree& tree,
-                                 std::span<const uint32_t> rows = {},
-                                 const ProgressFn& progress = {});
-std::vector<float> surfaceShares(std::span<const Vec3> position, std::span<const Vec3> normal,
-                                 unsigned k, const ProgressFn& progress = {});
+std::vector<float> representedAreas(std::span<const Vec3> position, std::span<const Vec3> normal,
+                                    unsigned k, const KdTree& tree,
+                                    std::span<const uint32_t> rows = {},
+                                    const ProgressFn& progress = {});
+std::vector<float> representedAreas(std::span<const Vec3> position, std::span<const Vec3> normal,
+                                    unsigned k, const ProgressFn& progress = {});
 
 // The default k. Clamps are in units of radii that follow from it, and so are comparable between
 // methods.
-inline constexpr unsigned kShareNeighbours = 20;
+inline constexpr unsigned kAreaNeighbours = 20;
 
 // Radii of VPLs that were not spread by elimination: each represents its share of the surface.
-struct ShareRadii {
+struct RepresentedRadii {
   std::vector<float> radius;  // share = 2 sqrt(3) radius^2, for disks in their densest packing
   double area = 0.0;          // sum of the shares
   double rMax = 0.0;          // radius of equally many equal disks
 };
-ShareRadii shareRadii(std::span<const Vec3> position, std::span<const Vec3> normal);
+RepresentedRadii representedRadii(std::span<const Vec3> position, std::span<const Vec3> normal);
 
 }  // namespace bnvpl

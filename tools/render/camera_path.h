@@ -25,18 +25,18 @@ inline SpecularPath traceCameraPath(const Accelerator& accel, const LightSet& li
   SpecularLightSampling sampling = specularLights;
   if (groups.sums) {
     sampling.emissionFirst = (hidesSky ? sinkTo(waiting) : groups.emission()).times(weight);
-    sampling.emissionLater = groups.direct().times(weight);
+    sampling.directLater = groups.direct().times(weight);
   }
   SpecularPath path =
       followSpecularPath(accel, lights, origin, direction, Arrival{}, rng, sampling);
   if (weight != 1.0f) {
-    for (Vec3* part : {&path.throughput, &path.emissionFirst, &path.emissionLater}) *part *= weight;
+    for (Vec3* part : {&path.throughput, &path.emissionFirst, &path.directLater}) *part *= weight;
   }
   const bool sky = path.firstDistance == INFINITY;
   if (hidesSky && sky) path.emissionFirst = {};
   for (uint32_t g = 0; !sky && g < waiting.size(); ++g) groups.emission().add(g, waiting[g]);
   out.emission = path.emissionFirst;
-  out.direct = path.emissionFirst + path.emissionLater;
+  out.direct = path.emissionFirst + path.directLater;
   if (path.firstDistance < INFINITY) {
     out.depth = path.firstDistance * dot(direction, accel.scene().camera.forward);
   }

@@ -1,4 +1,4 @@
-#include "spatial/local_density.h"
+#include "spatial/represented_area.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,6 +7,7 @@
 #include "core/sampling.h"
 #include "spatial/all_neighbours.h"
 #include "spatial/compatible_surface.h"
+#include "spatial/packed_disks.h"
 
 namespace bnvpl {
 namespace {
@@ -81,9 +82,9 @@ std::vector<float> sharesOf(std::span<const Vec3> position, std::span<const Vec3
 
 }  // namespace
 
-std::vector<float> surfaceShares(std::span<const Vec3> position, std::span<const Vec3> normal,
-                                 unsigned k, const KdTree& tree, std::span<const uint32_t> rows,
-                                 const ProgressFn& progress) {
+std::vector<float> representedAreas(std::span<const Vec3> position, std::span<const Vec3> normal,
+                                    unsigned k, const KdTree& tree, std::span<const uint32_t> rows,
+                                    const ProgressFn& progress) {
   const auto find = [&](uint32_t self, size_t count, std::vector<Neighbour>& nearest) {
     tree.nearest(position[self], count, nearest);
   };
@@ -91,8 +92,8 @@ std::vector<float> surfaceShares(std::span<const Vec3> position, std::span<const
       position, normal, k, [&] { return find; }, rows, progress);
 }
 
-std::vector<float> surfaceShares(std::span<const Vec3> position, std::span<const Vec3> normal,
-                                 unsigned k, const ProgressFn& progress) {
+std::vector<float> representedAreas(std::span<const Vec3> position, std::span<const Vec3> normal,
+                                    unsigned k, const ProgressFn& progress) {
   const AllNeighbours points(position);
   const auto makeFind = [&points] {
     // Short and long queries have a state each, so that a long one does not widen the next short
@@ -106,14 +107,14 @@ std::vector<float> surfaceShares(std::span<const Vec3> position, std::span<const
   return sharesOf(position, normal, k, makeFind, {}, progress);
 }
 
-ShareRadii shareRadii(std::span<const Vec3> position, std::span<const Vec3> normal) {
-  ShareRadii result;
-  for (const float share : surfaceShares(position, normal, kShareNeighbours)) {
+RepresentedRadii representedRadii(std::span<const Vec3> position, std::span<const Vec3> normal) {
+  RepresentedRadii result;
+  for (const float share : representedAreas(position, normal, kAreaNeighbours)) {
     result.area += double{share};
-    result.radius.push_back(std::sqrt(share / (2.0f * std::sqrt(3.0f))));
+    result.radius.push_back(packedDiskRadius(share));
   }
   const auto count = static_cast<double>(std::max<size_t>(1, position.size()));
-  result.rMax = std::sqrt(result.area / (2.0 * std::sqrt(3.0) * count));
+  result.rMax = packedDiskRadius(result.area, count);
   return result;
 }
 

@@ -1,4 +1,4 @@
-#include "tools/estimate/vpl_surface.h"
+#include "tools/estimate/lit_columns.h"
 
 namespace bnvpl {
 

@@ -8,15 +8,18 @@
 #include <optional>
 
 #include "tools/estimate/estimate.h"
+#include "tools/estimate/lit_columns.h"
 #include "tools/estimate/photon_emission.h"
 #include "tools/estimate/photon_shares.h"
 #include "tools/estimate/photon_sums.h"
-#include "tools/estimate/vpl_surface.h"
 #include "transport/coverage.h"
 #include "transport/emission_guide.h"
 #include "transport/vpl_groups.h"
 
 namespace bnvpl {
+
+// Photons that shards and progress count together.
+inline constexpr uint64_t kPhotonsPerRange = 4096;
 
 // Options of the photon methods. Sums over more than 2^36 photons would exceed their fixed-point
 // range.
@@ -43,14 +46,14 @@ struct PhotonHit {
 };
 
 // Adds deposits of hits to exact sums. Thread-safe where each thread has its own sums.
-class PhotonScatter {
+class PhotonDeposits {
  public:
-  PhotonScatter(const EstimateInputs& in, float radius, uint64_t photons);
+  PhotonDeposits(const EstimateInputs& in, float radius, uint64_t photons);
 
   // Photons share the flux of VPL i with paths: their deposits weigh g / (g + balance[i]) by the
   // density g of their start (PhotonMis). Light that only photons find weighs 1, and so does all
   // unless a balance is set.
-  void setEmissionBalance(std::span<const float> balance) { emissionBalance_ = balance; }
+  void setMisRatios(std::span<const float> balance) { misRatios_ = balance; }
   // deposit() adds all or a part of a hit's flux, weighed, to one VPL. tally() records what became
   // of a whole hit.
   void deposit(uint32_t vpl, const PhotonHit& hit, Vec3 flux, PhotonSums& sums) const;
@@ -82,16 +85,16 @@ class PhotonScatter {
   // Unit of VplSum::squares, which leaves room for the deposits of all photons.
   double squareUnit_;
   Coverage coverage_;
-  std::span<const float> emissionBalance_;
+  std::span<const float> misRatios_;
 };
 
 // Deposits a hit; must be thread-safe. `rng` continues the photon's random numbers.
-using ScatterRule =
-    std::function<void(const PhotonScatter&, const PhotonHit&, Rng& rng, PhotonSums& sums)>;
+using DepositRule =
+    std::function<void(const PhotonDeposits&, const PhotonHit&, Rng& rng, PhotonSums& sums)>;
 
 // Deposits the whole hit in one VPL, drawn uniformly from those on a compatible surface and in
 // sight.
-void scatterToOneInSight(const PhotonScatter& scatter, const PhotonHit& hit, Rng& rng,
+void depositToOneInSight(const PhotonDeposits& deposits, const PhotonHit& hit, Rng& rng,
                          PhotonSums& sums);
 
 // Parameters of tracePhotons().
@@ -100,19 +103,19 @@ struct PhotonRun {
   size_t emitPoints;  // per VPL
   unsigned maxBounces;
   const PhotonShares& shares;
-  const PhotonScatter& scatter;
+  const PhotonDeposits& deposits;
   const EmissionGuide* guide = nullptr;  // null: photons by power
 };
 // Traces all photons and returns their sums. `in.controls` and `in.progress` are for this run
 // alone; progress counts photons.
-PhotonSums tracePhotons(const EstimateInputs& in, const PhotonRun& run, const ScatterRule& rule);
+PhotonSums tracePhotons(const EstimateInputs& in, const PhotonRun& run, const DepositRule& rule);
 // WorkControls state of a run that has traced all of its photons.
 std::string finishedState(const PhotonSums& sums, uint64_t photons);
 
-EnergyAccount accountOf(const PhotonSums& sums, const PhotonScatter& scatter, uint64_t photons);
+EnergyAccount accountOf(const PhotonSums& sums, const PhotonDeposits& deposits, uint64_t photons);
 
 // The whole estimate by one rule and kPhotonOptions. Fills the columns of stage Lit.
 EstimateResult estimateByPhotons(const EstimateInputs& in, const Values& options,
-                                 const ScatterRule& rule);
+                                 const DepositRule& rule);
 
 }  // namespace bnvpl
