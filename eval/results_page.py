@@ -74,14 +74,6 @@ def errors(rows: Rows) -> Rows:
     return table
 
 
-def gathers(rows: Rows) -> Rows:
-    table = columns(
-        rows, "scene", "gather", "difference to all / mean", "render, CPU s", "its relMSE"
-    )
-    table[0][-1] = "relMSE at equal time"
-    return table
-
-
 def scatters(rows: Rows) -> Rows:
     """Mean ratio and relMSE of the default, of thesis scatter, and of the thesis as written."""
     head = ["scene"]
@@ -128,7 +120,6 @@ SHORT: dict[str, Callable[[dict[str, Rows]], Rows]] = {
     "rooms": lambda full: rooms(full["rooms"]),
     "gallery": lambda full: full["gallery"],
     "scatter": lambda full: scatters(full["scatter"]),
-    "gather": lambda full: gathers(full["gather"]),
 }
 
 

@@ -55,7 +55,7 @@ class ExplorerTest(PageCase):
     def test_a_place_shows_its_vpls(self) -> None:
         self.assertIn("3 VPLs with 1 in sight", self.text())
         self.click(0.1, 0.1)
-        self.assertIn("Pixel (0, 0) of 4×3: 3 VPLs bring 87.5 % of its VPL light", self.text())
+        self.assertIn("Pixel (0, 0) of 4×3: 3 VPLs contribute 87.5 % of its VPL light", self.text())
         self.assertIn("Rings: 1 behind surfaces. Outside the picture: 1.", self.text())
         self.assertEqual(
             self.rows(),

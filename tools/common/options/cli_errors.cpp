@@ -41,10 +41,11 @@ std::vector<std::string> optionsOf(const CLI::App& cli) {
 }
 
 // Outdated names of options, with their replacements.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 4> kRenamed{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kRenamed{
     {{"--specks", "--fireflies redistribute or keep"},
      {"--sharers", "--reuse"},
      {"--balance", "--allocate"},
+     {"--least-probability", "--min-probability"},
      {"--near-field", "--compensate near-field or none"}}};
 
 // Describes the first word that is a mistyped or outdated option; empty: there is none.
