@@ -39,6 +39,7 @@ Vec3 glossyOf(const ReceiverPacket& p, uint32_t lane, Vec3 from) {
   const Bsdf& b = *p.bsdf[lane];
   const Vec3 direction = normalize(from - b.point().position);
   const float cosine = dot(b.point().ns, direction);
+  if (!(cosine > 1e-30f)) return {};  // it is positive in the transfer, but rounds to 0 here
   return b.eval(LobeGroup::Rough, direction) * (1.0f / cosine) - b.diffuseValue();
 }
 

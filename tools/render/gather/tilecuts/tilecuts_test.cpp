@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/gather_checks.h"
+#include "tests/support/gather_of.h"
 
 namespace bnvpl::test {
 namespace {
@@ -187,6 +188,35 @@ TEST(TileCuts, NoiseIsFineGrain) {
   }
   EXPECT_GT(ofMeans, 0.0);
   EXPECT_LT(ofMeans / ofPixels, 0.4);  // 1/4 for independent errors
+}
+
+// VPLs in the horizon of the shading normal. The cosine rounds to 0 in one formula and to a
+// positive number in another.
+TEST(TileCuts, GlossyPointsHaveFiniteLightFromTheirHorizon) {
+  Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "cornell/scene.toml");
+  for (Material& m : scene.materials) {
+    m.phong().glossy = Vec3(0.5f);
+    m.phong().exponent = 12.0f;
+  }
+  const World world(std::move(scene));
+  SurfacePoint at;
+  ASSERT_TRUE(world.accel.closestHit(world.scene.camera.position, world.scene.camera.forward, at));
+  at.position = {0.27f, 0.4f, 0.2f};  // in the air
+  VplLights vpls = makeVplLights(cornell().lit, world.accel, 1.0f);
+  Rng rng(3, 0);
+  for (int turn = 0; turn < 100; ++turn) {
+    at.ns = at.ng = at.wo = normalize(Vec3{rng.next() - 0.5f, rng.next() - 0.5f, 0.3f});
+    const Frame frame(at.ns);
+    for (size_t i = 0; i < vpls.size(); ++i) {
+      const float angle = 2.0f * kPi * rng.next();
+      const Vec3 way = frame.s * std::cos(angle) + frame.t * std::sin(angle);
+      vpls.position[i] = at.position + way * (0.01f + 0.04f * rng.next());
+      vpls.normal[i] = -way;
+    }
+    const GatherOf gather(world, vpls, {{"gather", "tilecuts"}, {"max-cut", "100k"}});
+    const Gathered found = gather.at(Bsdf(world.scene, at));
+    ASSERT_TRUE(isFinite(found.radiance) && isFinite(found.clamped)) << turn;
+  }
 }
 
 }  // namespace
