@@ -54,8 +54,8 @@ PlaceResult traceRows(const PlaceInputs& in, const Values& options, double spare
 }
 
 // A run that can be interrupted is traced as a single shard, whose rows are kept in memory.
-PlaceResult placeInPieces(const PlaceInputs& in, const Values& options, const ProgressFn& progress,
-                          WorkControls controls) {
+PlaceResult placeResumable(const PlaceInputs& in, const Values& options, const ProgressFn& progress,
+                           WorkControls controls) {
   std::vector<std::string> records;
   const ShardSink sink{
       [&](std::string_view, uint64_t, std::string_view bytes) { records.emplace_back(bytes); }, {}};
@@ -70,7 +70,8 @@ PlaceResult placeInPieces(const PlaceInputs& in, const Values& options, const Pr
                   [](uint64_t) { throw std::logic_error("the paths of a whole ended early"); });
 }
 
-PlaceResult placeAtOnce(const PlaceInputs& in, const Values& options, const ProgressFn& progress) {
+PlaceResult placeUninterrupted(const PlaceInputs& in, const Values& options,
+                               const ProgressFn& progress) {
   const PlaceMethod& method = placeMethod(options);
   PlaceResult result = collectRows(in.accel.scene().name(),
                                    {options[kPlaceCountOption], method.last, in.views.turns},
@@ -83,8 +84,8 @@ PlaceResult placeAtOnce(const PlaceInputs& in, const Values& options, const Prog
 
 PlaceResult place(const PlaceInputs& in, const Values& options, const ProgressFn& progress,
                   const WorkControls& controls) {
-  PlaceResult result = controls.pause ? placeInPieces(in, options, progress, controls)
-                                      : placeAtOnce(in, options, progress);
+  PlaceResult result = controls.pause ? placeResumable(in, options, progress, controls)
+                                      : placeUninterrupted(in, options, progress);
   result.table.indirectShare = indirectShareFor(in, options);
   result.table.sceneHash = in.accel.scene().contentHash;
   return result;

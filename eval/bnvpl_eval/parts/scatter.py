@@ -6,6 +6,7 @@ from typing import Any
 from ..context import Context
 from ..pipeline import METHODS
 from ..settings import ROOT
+from ..stage_runs import estimated, kept, placed, rendered
 from ..tables import column, table
 
 COLUMNS = [
@@ -57,37 +58,10 @@ def run(context: Context) -> None:
 
 
 def dark_room(context: Context, scatter: str) -> dict[str, Any]:
-    run, scene = context.runner.run, {"scene": ROOMS}
-    placed = run("vpl-place", ["{scene}", "-n", 20000, "-o", "@c.vpl", "--quiet"], scene, ["c.vpl"])
-    kept = run(
-        "vpl-eliminate",
-        ["{c}", "-n", 500, "-o", "@v.vpl", "--quiet"],
-        {"c": placed["c.vpl"]},
-        ["v.vpl"],
-    )
-    lit = run(
-        "vpl-estimate",
-        ["{scene}", "{v}", "--photons", "1M", "--method", scatter, "-o", "@lit.vpl", "--quiet"],
-        {**scene, "v": kept["v.vpl"]},
-        ["lit.vpl"],
-    )
-    image = run(
-        "vpl-render",
-        [
-            "{scene}",
-            "{lit}",
-            "--size",
-            "80x60",
-            "--spp",
-            8,
-            "-o",
-            "@image.exr",
-            "--stats",
-            "@stats.json",
-            "--quiet",
-        ],
-        {**scene, "lit": lit["lit.vpl"]},
-        ["image.exr", "stats.json"],
-    )
+    tools = context.runner
+    candidates = placed(tools, ROOMS, "-n", 20000)["candidates.vpl"]
+    vpls = kept(tools, candidates, "-n", 500)["vpls.vpl"]
+    lit = estimated(tools, ROOMS, vpls, "--photons", "1M", "--method", scatter)["lit.vpl"]
+    image = rendered(tools, ROOMS, lit, "--size", "80x60", "--spp", 8)
     stats = json.loads(image["stats.json"].read_text())
     return {"dark_room": stats["mean_indirect"]}

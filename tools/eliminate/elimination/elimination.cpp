@@ -61,8 +61,8 @@ std::vector<size_t> stepsFor(size_t candidates, size_t count) {
 }
 
 // Runs one step, which keeps `keep` candidates. Returns their indices in `of`, ascending.
-std::vector<uint32_t> keepOf(const Sorted& of, size_t keep, size_t count, const Values& options,
-                             const ProgressFn& progress) {
+std::vector<uint32_t> eliminationStep(const Sorted& of, size_t keep, size_t count,
+                                      const Values& options, const ProgressFn& progress) {
   // Radii are proportional to 1 / sqrt(keep).
   const auto scale = static_cast<float>(std::sqrt(double(count) / double(keep)));
   std::vector<float> radius = of.radius;
@@ -84,21 +84,23 @@ std::vector<uint32_t> keepOf(const Sorted& of, size_t keep, size_t count, const 
 // until no more than it keeps are left; of equal weights, the higher row goes first.
 Kept run(const EliminateInputs& in, const Values& options) {
   const size_t count = options[kEliminateCountOption];
-  Sorted left;
-  left.row = mortonOrder(in.candidates.position);
-  left.position = inOrder<Vec3>(in.candidates.position, left.row);
-  left.normal = inOrder<Vec3>(in.candidates.normal, left.row);
-  CandidateRadii radii =
-      candidateRadii(left.position, left.normal, static_cast<double>(count), options, in.progress);
-  left.radius = std::move(radii.radius);
+  Sorted remaining;
+  remaining.row = mortonOrder(in.candidates.position);
+  remaining.position = inOrder<Vec3>(in.candidates.position, remaining.row);
+  remaining.normal = inOrder<Vec3>(in.candidates.normal, remaining.row);
+  CandidateRadii radii = candidateRadii(remaining.position, remaining.normal,
+                                        static_cast<double>(count), options, in.progress);
+  remaining.radius = std::move(radii.radius);
   for (const size_t keep : stepsFor(in.candidates.size(), count)) {
-    const std::vector<uint32_t> places = keepOf(left, keep, count, options, in.progress);
-    left = {inOrder<uint32_t>(left.row, places), inOrder<Vec3>(left.position, places),
-            inOrder<Vec3>(left.normal, places), inOrder<float>(left.radius, places)};
+    const std::vector<uint32_t> places =
+        eliminationStep(remaining, keep, count, options, in.progress);
+    remaining = {inOrder<uint32_t>(remaining.row, places),
+                 inOrder<Vec3>(remaining.position, places), inOrder<Vec3>(remaining.normal, places),
+                 inOrder<float>(remaining.radius, places)};
   }
   if (in.progress) in.progress(count);
   std::vector<std::pair<uint32_t, float>> kept;
-  for (size_t i = 0; i < count; ++i) kept.emplace_back(left.row[i], left.radius[i]);
+  for (size_t i = 0; i < count; ++i) kept.emplace_back(remaining.row[i], remaining.radius[i]);
   std::sort(kept.begin(), kept.end());
   Kept result;
   result.rMax = radii.rMax;

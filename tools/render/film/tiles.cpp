@@ -95,7 +95,7 @@ CameraSample makeSample(const Scene& scene, const PixelFilter& filter, uint64_t 
   s.origin = ray.origin;
   s.direction = ray.direction;
   s.weight = weight;
-  s.rng = Rng(key + 1, index * range.stride + sample);
+  s.rng = Rng(key + 1, index * range.stride + sample);  // a stream beside that of `key`
   return s;
 }
 

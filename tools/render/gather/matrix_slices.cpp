@@ -41,24 +41,31 @@ size_t divideAtMiddle(std::span<T> all, const Value& value) {
   return below == 0 || below == all.size() ? all.size() / 2 : below;
 }
 
-// Splits points along the longest of six sides until a slice has at most `most` points.
-void slice(std::span<Placed> points, size_t most, Rng& rng, std::vector<Placed>& slices) {
+// Splits points at the middle of the longest of six sides until a slice has at most `max` points,
+// or only coincident ones.
+void slice(std::span<Placed> points, size_t max, size_t node, Rng& rng, SlicePlan& plan) {
   Placement middle{}, side{};
   for (size_t a = 0; a < middle.size(); ++a) {
-    const auto on = [a](const Placed& p) { return p.at[a]; };
-    const auto ends = std::ranges::minmax_element(points, {}, on);
-    const double low = on(*ends.min), high = on(*ends.max);
+    const auto ends =
+        std::ranges::minmax_element(points, {}, [a](const Placed& p) { return p.at[a]; });
+    const double low = (*ends.min).at[a], high = (*ends.max).at[a];
     middle[a] = 0.5 * (low + high), side[a] = high - low;
   }
-  if (points.size() <= most) {
+  const auto axis = static_cast<size_t>(std::ranges::max_element(side) - side.begin());
+  const auto isBelow = [&](const Placed& p) { return p.at[axis] < middle[axis]; };
+  const auto below =
+      static_cast<size_t>(std::partition(points.begin(), points.end(), isBelow) - points.begin());
+  if (points.size() <= max || below == 0) {
     const auto pick = static_cast<size_t>(double{rng.next()} * double(points.size()));
-    slices.push_back({middle, points[pick].point});
+    plan.nodes[node].slice = static_cast<uint32_t>(plan.slices.size());
+    plan.slices.push_back({middle, points[pick].point});
     return;
   }
-  const auto axis = static_cast<size_t>(std::ranges::max_element(side) - side.begin());
-  const size_t below = divideAtMiddle(points, [&](const Placed& p) { return p.at[axis]; });
-  slice(points.first(below), most, rng, slices);
-  slice(points.subspan(below), most, rng, slices);
+  const auto child = static_cast<uint32_t>(plan.nodes.size());
+  plan.nodes[node] = {static_cast<uint32_t>(axis), middle[axis], child, 0};
+  plan.nodes.resize(plan.nodes.size() + 2);
+  slice(points.first(below), max, child, rng, plan);
+  slice(points.subspan(below), max, child + 1, rng, plan);
 }
 
 // Splits a cluster along the line between its two longest columns. Returns one part and leaves the
@@ -107,13 +114,9 @@ void setShares(const Cluster& cluster, const Columns& nearby, const Columns& all
 
 size_t SlicePlan::sliceOf(const SurfacePoint& point) const {
   const Placement here = placeOf(point, scale);
-  size_t nearest = 0;
-  double least = INFINITY;
-  for (size_t k = 0; k < slices.size(); ++k) {
-    const double d = squaredDistance(slices[k].at, here);
-    if (d < least) least = d, nearest = k;
-  }
-  return nearest;
+  const Node* node = nodes.data();
+  while (node->below != 0) node = &nodes[node->below + (here[node->axis] < node->middle ? 0u : 1u)];
+  return node->slice;
 }
 
 SlicePlan makeSlicePlan(const GatherInputs& in, const Values& options) {
@@ -128,7 +131,8 @@ SlicePlan makeSlicePlan(const GatherInputs& in, const Values& options) {
   for (const SurfacePoint& p : film) points.push_back({placeOf(p, plan.scale), p});
   const uint64_t key = streamKey(in.seed, RandomStream::LightTree) + 1;
   Rng rng(key, 0);
-  slice(points, std::max<size_t>(1, points.size() / options[kSlicesOption]), rng, plan.slices);
+  plan.nodes.resize(1);
+  slice(points, std::max<size_t>(1, points.size() / options[kSlicesOption]), 0, rng, plan);
 
   std::vector<SurfacePoint> rows;
   for (const Placed& s : plan.slices) rows.push_back(s.point);

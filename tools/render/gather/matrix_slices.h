@@ -27,10 +27,19 @@ struct PlacedPoint {
 
 // The VPLs of each slice, one per cluster.
 struct SlicePlan {
-  float scale = 1.0f;  // scale of normals
+  // A node of the tree of slices: places below `middle` on the axis belong to node `below`, the
+  // others to `below` + 1.
+  struct Node {
+    uint32_t axis = 0;
+    double middle = 0.0;
+    uint32_t below = 0;  // 0: a leaf
+    uint32_t slice = 0;  // that of a leaf
+  };
+  float scale = 1.0f;       // scale of normals
+  std::vector<Node> nodes;  // nodes[0] is the root; empty if the film shows nothing
   std::vector<PlacedPoint> slices;
   std::vector<ClusterDraws> draws;  // empty if no slice sees a VPL
-  // The slice with the nearest centre. There are slices.
+  // The slice in whose part of space the point lies. There are slices.
   size_t sliceOf(const SurfacePoint& point) const;
 };
 

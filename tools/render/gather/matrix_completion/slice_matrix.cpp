@@ -82,7 +82,7 @@ void SliceMatrix::add(const Column& column, size_t k, double visibility) {
 }
 
 size_t firstEntries(double share, size_t rows) {
-  constexpr size_t kMinEntries = 8;
+  constexpr size_t kMinEntries = 16;
   return std::max(kMinEntries, static_cast<size_t>(std::ceil(share * static_cast<double>(rows))));
 }
 
