@@ -23,7 +23,7 @@ using Range = CellLists::Range;
 
 constexpr int kMaxLevels = 32;
 constexpr size_t kCellsAtOnce = 256;
-constexpr size_t kLeavesOfAnyTree = 4096;  // about 10 MB
+constexpr size_t kMinLeafLimit = 4096;  // leaves that any tree may have, about 10 MB
 
 // The point list that OpenVDB partitions. Positions are in cells, because OpenVDB's transforms
 // reject voxels below 1e-5.
@@ -118,15 +118,15 @@ class Builder {
 // True if a tree of these points would have more than a leaf for every four points. A leaf takes
 // 2 kB however few points it has, and an inner node, which spans 16^3 leaves, as much as 16 leaves.
 bool isSparse(const PointList& list) {
-  const size_t most = std::max(list.size() / 4, kLeavesOfAnyTree);
+  const size_t limit = std::max(list.size() / 4, kMinLeafLimit);
   std::unordered_set<Coord> leaves, innerNodes;
   for (size_t n = 0; n < list.size(); ++n) {
     Vec3d position;
     list.getPos(n, position);
-    const Coord cell = Coord::round(position);
-    leaves.insert(cell >> Leaf::TOTAL);
-    innerNodes.insert(cell >> (Leaf::TOTAL + 4));
-    if (leaves.size() + 16 * innerNodes.size() > most) return true;
+    const Coord leaf = Coord::round(position) >> Leaf::TOTAL;
+    if (!leaves.insert(leaf).second) continue;
+    innerNodes.insert(leaf >> 4);
+    if (leaves.size() + 16 * innerNodes.size() > limit) return true;
   }
   return false;
 }

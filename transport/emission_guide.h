@@ -34,7 +34,7 @@ class EmissionGuide {
     double squares = 0.0;
   };
 
-  // EmissionSample by power.
+  // Emission by power.
   explicit EmissionGuide(const LightSet& lights) : lights_(&lights) {}
   // `traced`: number of pilot photons, the useless ones included. The guide stays one by power
   // unless it promises much less noise.

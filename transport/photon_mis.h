@@ -35,7 +35,8 @@ struct PhotonMis {
   const std::vector<uint64_t>* lamps = nullptr;
   const EmissionGuide* guide = nullptr;  // density of the photons; null: by power
   float misRatio = 0.0f;
-  // With which rays choose lobes (walk.h) at their first vertex, or a typical value.
+  // The importance of rough lobes by which rays choose lobes at their first vertex (walk.h), or a
+  // typical value of it.
   float roughImportance = 1.0f;
   // Whether shadow rays from the last vertex count.
   bool countsShadowRays = false;

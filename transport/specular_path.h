@@ -28,7 +28,7 @@ struct SpecularPath {
 };
 
 // `arrival` describes the first segment; its `photons` hold for the segments behind specular
-// vertices, and with an misRatio for the first, too.
+// vertices, and with a misRatio for the first, too.
 SpecularPath followSpecularPath(const Accelerator& accel, const LightSet& lights, Vec3 origin,
                                 Vec3 direction, const Arrival& arrival, Rng& rng,
                                 const SpecularLightSampling& specularLights = {});

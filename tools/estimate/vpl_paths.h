@@ -50,8 +50,8 @@ class VplPaths {
     float radius;                                        // reach in units of each VPL's radius
     size_t emitPoints;                                   // per VPL
     const SpatialLightSampler* spatialLights = nullptr;  // learned distribution for light sampling
-    // That of each VPL with the photons from `guide` that share its flux (PhotonMis); empty: none
-    // do.
+    // One ratio for each VPL, for MIS with the photons from `guide` (PhotonMis); empty: no photons
+    // share its flux.
     std::span<const float> misRatio = {};
     const EmissionGuide* guide = nullptr;
   };

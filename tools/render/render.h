@@ -19,7 +19,7 @@ const StageSpec& renderSpec();
 Values resolveRender(const Given& given);
 // The options as if the filter of the film had been given, unless another one was.
 Given withFilterOf(const Film& film, Given given);
-// PassBudget of the passes, or none if the image is rendered without passes. Throws UsageError.
+// The budget of the passes, or none if the image is rendered without passes. Throws UsageError.
 std::optional<PassBudget> budgetOf(const Values& options);
 // Samples per pixel in a pass, on average, unless a trial finds that fewer fit into --time.
 uint64_t passSppOf(const Values& options);

@@ -82,9 +82,9 @@ struct IntegratorMethod {
   std::span<const Option> options;
   Integrator (*make)(const IntegratorInputs&, const Values&);
   bool needsVpls = false;
-  bool tracesPhotons =
-      false;                 // sets Integrator::tracePhotons; photons traced by `make` do not count
-  bool gathersVpls = false;  // gathers VPLs, so that --gather and --compensate apply
+  // Sets Integrator::tracePhotons; photons traced by `make` do not count.
+  bool tracesPhotons = false;
+  bool gathersVpls = false;  // --gather and --compensate apply
 };
 // Defined in the build folder by cmake/Methods.cmake, from the folders beside this file.
 std::span<const IntegratorMethod* const> integratorMethods();

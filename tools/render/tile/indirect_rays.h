@@ -128,7 +128,8 @@ class IndirectRays {
   virtual void send(const RayOrigin& from, unsigned count, uint32_t first, uint64_t key,
                     RayContributions& out) const = 0;
   virtual double costOfRay() const = 0;  // in the units of cost:: (sample_allocation.h)
-  // With which rays choose lobes at their first hit (chooseLobes()), or a typical value.
+  // The importance of rough lobes by which rays choose lobes at their first hit (chooseLobes()), or
+  // a typical value of it.
   virtual float roughImportance() const { return 1.0f; }
 };
 
