@@ -22,7 +22,9 @@ constexpr uint64_t random64(uint64_t key, uint64_t index, uint32_t dimension) {
 }
 // Uniform in [0, 1): the top 24 bits, so that 1 is never reached.
 constexpr float toUnitFloat(uint64_t bits) { return static_cast<float>(bits >> 40) * 0x1p-24f; }
-// Min probability of an event that is sampled by such a number. The number 0 alone has this
+// The same with 53 bits, for choices that use one number several times.
+constexpr double toUnitDouble(uint64_t bits) { return static_cast<double>(bits >> 11) * 0x1p-53; }
+// Min probability of an event that is sampled by a number of 24 bits. The number 0 alone has this
 // probability, so that less likely events would be sampled too often, with weights out of bounds.
 inline constexpr float kMinProbability = 0x1p-24f;
 

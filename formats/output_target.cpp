@@ -96,6 +96,11 @@ void requireRenameTo(const fs::path& target, const fs::path& output) {
 
 fs::path replaceableTarget(const fs::path& output) {
   const auto fail = [&](const std::string& problem) { return OutputError(output, problem); };
+  if (output == "-") {
+    throw fail(
+        "means standard output elsewhere; outputs go to files, which are replaced whole; "
+        "name a file (./- for this name)");
+  }
   const std::vector<fs::path> chain = linkChain(output);
   for (const fs::path& link : chain) {
     if (isStream(link))

@@ -18,8 +18,8 @@ fs::path folderOf(const fs::path& file);
 void requireRenameTo(const fs::path& target, const fs::path& output);
 
 // followLinks(output), if a rename can replace it: a writable regular file, or a new name in a
-// writable folder. Throws OutputError for anything else: folders, devices, pipes, and open streams
-// such as /dev/stdout, wherever they lead.
+// writable folder. Throws OutputError for anything else: folders, devices, pipes, open streams such
+// as /dev/stdout, wherever they lead, and "-".
 fs::path replaceableTarget(const fs::path& output);
 
 }  // namespace bnvpl

@@ -32,7 +32,7 @@ class NearSurfaces {
   }
 
  private:
-  static constexpr float kMinDot = 0.9f;  // normals differ by at most 25 degrees
+  static constexpr float kMinDot = 0.9f;  // normals differ by at most 26 degrees
 
   static std::vector<float> scaled(std::span<const float> radii, float factor) {
     std::vector<float> scaled(radii.begin(), radii.end());

@@ -13,40 +13,40 @@ namespace bnvpl {
 namespace {
 
 // The distance within which `count` neighbours lie on a compatible surface.
-struct Reach {
+struct NeighbourRadius {
   float distanceSquared = 0.0f;
   unsigned count = 0;
 };
 
 // `nearest` is sorted by distance and may contain `self`, which is skipped.
-Reach reachOnSheet(std::span<const Vec3> position, std::span<const Vec3> normal, uint32_t self,
-                   const std::vector<Neighbour>& nearest, unsigned k) {
+NeighbourRadius radiusOnSurface(std::span<const Vec3> position, std::span<const Vec3> normal,
+                                uint32_t self, const std::vector<Neighbour>& nearest, unsigned k) {
   const size_t kth = std::min<size_t>(k, nearest.size() - 1);
   const float tolerance = kPlaneFactor * std::sqrt(nearest[kth].distanceSquared);
-  Reach reach;
+  NeighbourRadius radius;
   for (const Neighbour& n : nearest) {
     if (n.index == self || !compatibleSurfaces(position[self], normal[self], position[n.index],
                                                normal[n.index], tolerance)) {
       continue;
     }
-    reach = {n.distanceSquared, reach.count + 1};
-    if (reach.count == k) break;
+    radius = {n.distanceSquared, radius.count + 1};
+    if (radius.count == k) break;
   }
-  return reach;
+  return radius;
 }
 
 // find(self, count, nearest) finds the points nearest to point `self`.
 template <typename Find>
-Reach findReach(std::span<const Vec3> position, std::span<const Vec3> normal, uint32_t self,
-                unsigned k, Find& find, std::vector<Neighbour>& nearest) {
+NeighbourRadius findRadius(std::span<const Vec3> position, std::span<const Vec3> normal,
+                           uint32_t self, unsigned k, Find& find, std::vector<Neighbour>& nearest) {
   // On flat surfaces nearly all neighbours qualify, so that a short query usually suffices. Its
   // result is a prefix of that of the long query.
   find(self, k + k / 8 + 1, nearest);
-  Reach reach = reachOnSheet(position, normal, self, nearest, k);
-  if (reach.count == k) return reach;
+  NeighbourRadius radius = radiusOnSurface(position, normal, self, nearest, k);
+  if (radius.count == k) return radius;
   find(self, 3 * size_t{k} + 1, nearest);
-  reach = reachOnSheet(position, normal, self, nearest, k);
-  if (reach.count > 0) return reach;
+  radius = radiusOnSurface(position, normal, self, nearest, k);
+  if (radius.count > 0) return radius;
   const auto others = static_cast<unsigned>(nearest.size() - 1);
   return {nearest.back().distanceSquared, std::max(1u, others)};
 }
@@ -71,9 +71,10 @@ std::vector<float> sharesOf(std::span<const Vec3> position, std::span<const Vec3
     auto find = makeFind();
     for (size_t i = begin; i < end; ++i) {
       const auto self = rows.empty() ? static_cast<uint32_t>(i) : rows[i];
-      const Reach reach = findReach(position, normal, self, std::max(1u, k), find, nearest);
-      const float distanceSquared = std::max(reach.distanceSquared, smallest * smallest);
-      share[i] = kPi * distanceSquared / static_cast<float>(reach.count);
+      const NeighbourRadius radius =
+          findRadius(position, normal, self, std::max(1u, k), find, nearest);
+      const float distanceSquared = std::max(radius.distanceSquared, smallest * smallest);
+      share[i] = kPi * distanceSquared / static_cast<float>(radius.count);
     }
     if (progress) progress(end - begin);
   });

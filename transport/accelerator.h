@@ -65,8 +65,8 @@ class Accelerator {
   // to). The offset exceeds rounding errors: it scales with the scene and the distance from the
   // origin.
   Vec3 offsetOrigin(Vec3 p, Vec3 side) const {
-    const float reach = std::max(std::fabs(p.x), std::max(std::fabs(p.y), std::fabs(p.z)));
-    return p + side * (reach * 0x1p-18f + offsetBase_);
+    const float magnitude = std::max(std::fabs(p.x), std::max(std::fabs(p.y), std::fabs(p.z)));
+    return p + side * (magnitude * 0x1p-18f + offsetBase_);
   }
 
   const Scene& scene() const { return scene_; }

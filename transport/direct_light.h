@@ -140,7 +140,7 @@ Vec3 emissionAtInfinity(const LightSet& lights, Vec3 direction, const Arrival& a
 // of its light, if nothing hides it. `out` tells how the vertex sees the point. False: there is
 // none.
 template <typename Reflects>
-bool unoccludedLight(const LightSet& lights, const Reflects& reflected, const LightPlace& place,
+bool unoccludedLight(const LightSet& lights, const Reflects& reflected, const LightPoint& place,
                      LightSample& out, typename Reflects::Light& light) {
   if (!lights.sampleDirect(place.light, reflected.point().position, place.at.x, place.at.y, out))
     return false;
@@ -166,7 +166,7 @@ float shadowRaysTo(const LightSet& lights, size_t light, LightChoice choice);
 // One shadow ray to a point of a light that gets `count` of them in the mean.
 template <typename Reflects, typename RayPdf>
 typename Reflects::Light shadowRay(const Accelerator& accel, const LightSet& lights,
-                                   const Reflects& reflected, const LightPlace& place, float count,
+                                   const Reflects& reflected, const LightPoint& place, float count,
                                    const RayPdf& rayPdf, const PhotonMis& photons) {
   LightSample s;
   typename Reflects::Light light;
@@ -187,7 +187,7 @@ typename Reflects::Light directLight(const Accelerator& accel, const LightSet& l
   typename Reflects::Light sum;
   const LearnedLight& learned = sampling.learned;
   const LightChoice choice = sampling.choice;
-  const auto ray = [&](const LightPlace& place, float count) {
+  const auto ray = [&](const LightPoint& place, float count) {
     const auto light = shadowRay(accel, lights, reflected, place, count, rayPdf, sampling.photons);
     sum += light;
     if (sampling.groups) addToGroup(sampling, lights.group(place.light), light);
@@ -197,9 +197,10 @@ typename Reflects::Light directLight(const Accelerator& accel, const LightSet& l
     for (unsigned k = 0; k < learned.rays; ++k) {
       Point2 at = numbers.point(k);
       const uint32_t stratum = strata.pick(at.x);
-      const LightPlace place = strata.all->place(stratum, at);
+      const LightPoint place = strata.all->place(stratum, at);
       const float count = static_cast<float>(learned.rays) * strata.probability(stratum) /
-                          strata.all->share(stratum) * strata.all->lightShare(place.light);
+                          strata.all->powerFraction(stratum) *
+                          strata.all->pickProbability(place.light);
       ray(place, count);
     }
     return sum;
@@ -211,7 +212,7 @@ typename Reflects::Light directLight(const Accelerator& accel, const LightSet& l
     float probability = 1.0f;
     const size_t light = all ? k : lights.pick(rng.next(), probability);
     if (!(probability > 0.0f)) continue;
-    const LightPlace place{static_cast<uint32_t>(light), rng.nextPoint()};
+    const LightPoint place{static_cast<uint32_t>(light), rng.nextPoint()};
     ray(place, shadowRaysTo(lights, light, choice));
   }
   return sum;

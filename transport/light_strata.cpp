@@ -97,7 +97,7 @@ void LightStrata::groupLights(const LightSet& lights, size_t maxStrata) {
   }
 }
 
-LightPlace LightStrata::place(size_t stratum, Point2 at) const {
+LightPoint LightStrata::place(size_t stratum, Point2 at) const {
   const Stratum& s = strata_[stratum];
   if (s.end - s.begin > 1) {
     const size_t i = sampleCdf(std::span(cdf_).subspan(s.begin, s.end - s.begin), at.x);
@@ -112,7 +112,7 @@ LightPlace LightStrata::place(size_t stratum, Point2 at) const {
           {within(s.cell % c.columns, at.x, c.columns), within(s.cell / c.columns, at.y, c.rows)}};
 }
 
-uint32_t LightStrata::stratumOf(const LightPlace& place) const {
+uint32_t LightStrata::stratumOf(const LightPoint& place) const {
   const Cells& c = cells_[place.light];
   if (c.first == kNone) return kNone;
   const auto cellOf = [](float x, uint32_t count) {
@@ -180,10 +180,10 @@ float LearnedStrata::probability(uint32_t stratum) const {
   return sum;
 }
 
-float LearnedStrata::density(const LightPlace& place) const {
+float LearnedStrata::density(const LightPoint& place) const {
   const uint32_t stratum = all->stratumOf(place);
   if (stratum == kNone) return 0.0f;
-  return probability(stratum) / all->share(stratum) * all->lightShare(place.light);
+  return probability(stratum) / all->powerFraction(stratum) * all->pickProbability(place.light);
 }
 
 }  // namespace bnvpl

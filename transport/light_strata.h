@@ -16,7 +16,7 @@
 namespace bnvpl {
 
 // A point of the unit square of a light.
-struct LightPlace {
+struct LightPoint {
   uint32_t light = kNone;
   Point2 at{};
 };
@@ -29,13 +29,13 @@ class LightStrata {
 
   size_t size() const { return strata_.size(); }
   // Fraction of the total power.
-  float share(size_t stratum) const { return strata_[stratum].share; }
+  float powerFraction(size_t stratum) const { return strata_[stratum].share; }
   // Samples a point of a stratum from a point of the unit square.
-  LightPlace place(size_t stratum, Point2 at) const;
+  LightPoint place(size_t stratum, Point2 at) const;
   // The stratum of a point; kNone where its light has none.
-  uint32_t stratumOf(const LightPlace& place) const;
+  uint32_t stratumOf(const LightPoint& place) const;
   // Probability of a light when all are sampled by power.
-  float lightShare(size_t light) const { return cells_[light].share; }
+  float pickProbability(size_t light) const { return cells_[light].share; }
 
  private:
   struct Cells {  // strata of a light, row by row; lights of a group have their common stratum
@@ -93,7 +93,7 @@ struct LearnedStrata {
   uint32_t pick(float& u) const;
   float probability(uint32_t stratum) const;
   // Density of sampling this point, relative to that of sampleDirect() for its light.
-  float density(const LightPlace& place) const;
+  float density(const LightPoint& place) const;
 
  private:
   // An empty distribution leaves its weight to the more general ones.

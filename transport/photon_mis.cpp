@@ -20,7 +20,7 @@ bool PhotonMis::sends(size_t light, Vec3 towards) const {
 }
 
 float PhotonMis::specularProbability(const Bsdf& vertex, float roughImportance) {
-  return vertex.transmits() ? 1.0f : specularShare(vertex, roughImportance);
+  return vertex.transmits() ? 1.0f : probabilityOfSpecular(vertex, roughImportance);
 }
 
 float PhotonMis::shadowRayRatio(float shadowRays, float bsdfRays) {

@@ -11,7 +11,7 @@ namespace bnvpl {
 struct PhotonFate {
   Vec3 escaped;
   Vec3 absorbed;  // by surfaces, by Russian roulette and by the path's end
-  uint32_t hits = 0, rays = 0;
+  uint32_t rays = 0;
   bool finite = true;  // false: the flux became NaN or infinite, and the photon was dropped
 };
 
@@ -68,7 +68,6 @@ class PhotonWalk {
         fate_.finite = false;
         return;
       }
-      ++fate_.hits;
       visit(bsdf, arriving, rough_ + specular_ == 0);
     }
     const float survive = bsdf.reflectance();

@@ -18,13 +18,14 @@ StrataValues estimateStrata(const Accelerator& accel, const LightSet& lights,
       const auto which = static_cast<size_t>(rng.next() * static_cast<float>(vertices.size()));
       const Bsdf& bsdf = vertices[std::min(which, vertices.size() - 1)];
       const float u = rng.next(), v = rng.next();
-      const LightPlace place = strata.place(s, {u, v});
+      const LightPoint place = strata.place(s, {u, v});
       LightSample sample;
       Vec3 reflected;
       if (!unoccludedLight(lights, Reflected{bsdf}, place, sample, reflected) ||
           isHidden(accel, bsdf.point(), sample))
         continue;
-      const float contribution = mean(reflected) * strata.share(s) / strata.lightShare(place.light);
+      const float contribution =
+          mean(reflected) * strata.powerFraction(s) / strata.pickProbability(place.light);
       sum += contribution * contribution;
     }
     if (!(sum > 0.0f) || !std::isfinite(sum)) continue;

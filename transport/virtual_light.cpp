@@ -34,7 +34,7 @@ VplLights makeVplLights(const VplTable& lit, const Accelerator& accel, float cla
       for (uint32_t g = 0; g < groups.groups; ++g)
         lights.groupIntensity.push_back(groups.flux[i * groups.groups + g] * (part / kPi));
       const float radius = oneRadius > 0.0f ? oneRadius : lit.radius[i];
-      lights.clamp2.push_back(std::max(clamp * clamp * radius * radius, nearest * nearest));
+      lights.size2.push_back(std::max(clamp * clamp * radius * radius, nearest * nearest));
     }
   }
   return lights;
@@ -54,7 +54,7 @@ bool integratedTransfer(const VplLights& vpls, size_t i, const Bsdf& bsdf, Vec3 
   for (const float x : {at.position.x, at.position.y, at.position.z})
     key = mix64(key ^ std::bit_cast<uint32_t>(x));
   const SphericalLightTransfer found =
-      sphericalTransfer({d, vpls.normal[i], vpls.clamp2[i]}, bsdf, key);
+      sphericalTransfer({d, vpls.normal[i], vpls.size2[i]}, bsdf, key);
   out = {found.value, 0.0f, found.sampled};
   return !isBlack(out.transfer);
 }

@@ -19,7 +19,7 @@ struct VplLights {
   std::vector<Vec3> normal;
   std::vector<Vec3> intensity;  // intensity along the normal, flux / pi, W/sr
   std::vector<uint32_t> row;    // row of the VplTable, ascending
-  std::vector<float> clamp2;    // squared size of the kind, (clamp * radius)^2; never 0
+  std::vector<float> size2;     // squared size of the kind, (clamp * radius)^2; never 0
   size_t vplCount = 0;          // rows of the table that carry flux
   uint32_t groups = 0;          // light groups; 0: their light is not told apart
   std::vector<Vec3> groupIntensity;  // `groups` intensities for each entry
@@ -34,8 +34,8 @@ struct VplLights {
 
   // Holds all points that entry i shines from: its position, or its sphere.
   Bounds box(size_t i) const {
-    const Vec3 reach(isFromCentre(kind) ? 0.0f : std::sqrt(clamp2[i]));
-    return {position[i] - reach, position[i] + reach};
+    const Vec3 sphereRadius(isFromCentre(kind) ? 0.0f : std::sqrt(size2[i]));
+    return {position[i] - sphereRadius, position[i] + sphereRadius};
   }
 };
 
@@ -68,7 +68,7 @@ inline bool unoccludedTransfer(const VplLights& vpls, size_t i, const Bsdf& bsdf
   const float invDistance = 1.0f / std::sqrt(d2);
   const Vec3 value = bsdf.eval(LobeGroup::Rough, d * invDistance);
   if (isBlack(value)) return false;
-  const float bounded = falloff(vpls.kind, d2, vpls.clamp2[i]);
+  const float bounded = falloff(vpls.kind, d2, vpls.size2[i]);
   out.transfer = value * (facing * invDistance * bounded);
   out.clampLoss = 1.0f / (d2 * bounded) - 1.0f;
   return true;
@@ -82,12 +82,12 @@ struct GeometryTerm {
   int contributes;  // 0: the contribution is 0 regardless of visibility
 };
 template <typename Kind>
-GeometryTerm geometryTerm(Vec3 position, Vec3 normal, float clamp2, Vec3 receiver, Vec3 ns,
+GeometryTerm geometryTerm(Vec3 position, Vec3 normal, float size2, Vec3 receiver, Vec3 ns,
                           Vec3 ng) {
   const Vec3 d = position - receiver;
   const float d2 = lengthSquared(d);
   const float emitter = Kind::emitted(normal, d), received = dot(ns, d), above = dot(ng, d);
-  const float far2 = Kind::boundedDistance2(d2, clamp2);
+  const float far2 = Kind::boundedDistance2(d2, size2);
   const float far4 = d2 * far2;  // 0 where the VPL is at the point
   return {emitter * received / far4, far2 / d2 - 1.0f,
           (emitter > 0.0f) & (received > 0.0f) & (above > 0.0f) & (far4 > 0.0f)};

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import atexit
+import functools
 import tempfile
 import time
 import unittest
@@ -12,7 +14,8 @@ from typing import Any
 from selenium.webdriver import ActionChains
 from selenium.webdriver.common.keys import Keys
 
-from test_support import WIDTH, browser, run, write_report
+import make_report
+from test_support import WIDTH, browser, call, write_report
 
 # It reads a canvas of its own, as Chromium warns in the console of repeated reads of the page's.
 READ_PIXEL = """
@@ -25,21 +28,26 @@ READ_PIXEL = """
     }"""
 
 
+@functools.cache
+def page_in_browser() -> tuple[str, Any]:
+    """A page and the browser for it, which all cases share."""
+    folder = tempfile.TemporaryDirectory()
+    atexit.register(folder.cleanup)
+    page = Path(folder.name) / "report.html"
+    made = call(make_report.main, write_report(page.parent), "-o", page)
+    assert made.returncode == 0, made.stderr
+    driver = browser()
+    atexit.register(driver.quit)
+    return page.as_uri(), driver
+
+
 class PageCase(unittest.TestCase):
-    folder: tempfile.TemporaryDirectory[str]
     url: str
     driver: Any
 
     @classmethod
     def setUpClass(cls) -> None:
-        cls.folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(cls.folder.cleanup)
-        page = Path(cls.folder.name) / "report.html"
-        made = run("make_report.py", write_report(page.parent), "-o", page)
-        assert made.returncode == 0, made.stderr
-        cls.url = page.as_uri()
-        cls.driver = browser()
-        cls.addClassCleanup(cls.driver.quit)
+        cls.url, cls.driver = page_in_browser()
 
     def setUp(self) -> None:
         self.open(1280, "light")
@@ -102,7 +110,7 @@ class PageCase(unittest.TestCase):
     def keys(self, *keys: str, at: str = ".stage") -> None:
         target = self.one(at)
         self.js("arguments[0].focus({preventScroll: true})", target)
-        chain = ActionChains(self.driver)
+        chain = ActionChains(self.driver, duration=0)
         for key in keys:
             if len(key) > 1 and key.startswith("^"):
                 chain.key_down(Keys.SHIFT).send_keys(key[1:]).key_up(Keys.SHIFT)
@@ -114,14 +122,16 @@ class PageCase(unittest.TestCase):
 
     def colour(self, x: float, y: float) -> list[int]:
         """Colour of the canvas at a place given in image pixels at zoom 1."""
-        result: list[int] = self.js(
+        return self.colours([(x, y)])[0]
+
+    def colours(self, places: list[tuple[float, float]]) -> list[list[int]]:
+        result: list[list[int]] = self.js(
             """
-            const c = arguments[0].querySelector('.stage canvas'), s = c.width / arguments[3];
-            return readPixel(c, arguments[1] * s, arguments[2] * s);"""
+            const c = arguments[0].querySelector('.stage canvas'), s = c.width / arguments[2];
+            return arguments[1].map(([x, y]) => readPixel(c, x * s, y * s));"""
             + READ_PIXEL,
             self.viewer,
-            x,
-            y,
+            places,
             WIDTH,
         )
         return result

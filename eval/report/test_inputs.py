@@ -234,7 +234,7 @@ class InputTest(unittest.TestCase):
                 self.refused(expected)
 
     def test_output_that_cannot_be_written(self) -> None:
-        made = run("make_report.py", self.json, "-o", self.folder / "none" / "r.html")
+        made = call(make_report.main, self.json, "-o", self.folder / "none" / "r.html")
         self.assertEqual(made.returncode, 4)
         self.assertEqual(made.stderr.count("\n"), 1, made.stderr)
 

@@ -243,7 +243,7 @@ class RealPage(PageCase):
 
     def middle_row(self) -> list[Any]:
         self.until(lambda: bool(self.viewer.get_attribute("aria-busy") == "false"))
-        return [self.colour((k + 0.5) / 32 * WIDTH, 0.28 * WIDTH) for k in range(32)]
+        return self.colours([((k + 0.5) / 32 * WIDTH, 0.28 * WIDTH) for k in range(32)])
 
     def test_narrow_and_dark(self) -> None:
         self.open(400, "dark")

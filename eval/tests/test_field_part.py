@@ -29,6 +29,15 @@ class FittingSamples(unittest.TestCase):
         self.assertEqual(self.fitting(0.0, 4.0, 4.0), 1)
         self.assertEqual(self.fitting(0.0, 20.0, 4.0), 0)
 
+    def test_one_sample_whose_preparations_exceed_the_time_is_left_out(self) -> None:
+        self.assertEqual(self.fitting(20.0, 0.5, 12.0), 0)
+
+    def test_samples_that_become_cheaper_fill_the_time(self) -> None:
+        def cpu_s(spp: int) -> float:
+            return 1.5 + 0.4 * float(spp) ** 0.7
+
+        self.assertAlmostEqual(cpu_s(field.fitting_spp(cpu_s, 2, 12.0)), 12.0, delta=0.6)
+
     def test_no_more_than_the_limit(self) -> None:
         self.assertEqual(self.fitting(0.0, 1e-6, 4.0), field.MAX_SPP)
 

@@ -1,10 +1,9 @@
 // Photons are shared among lights of any power, and their weights preserve the energy.
-#include "tools/estimate/photon_shares.h"
-
 #include <gtest/gtest.h>
 
 #include "tests/support/grey_cube.h"
 #include "tests/transport/plain_scene.h"
+#include "tools/estimate/photons_per_light.h"
 
 namespace bnvpl::test {
 namespace {
@@ -24,7 +23,7 @@ World lampsOf(const std::vector<float>& intensities) {
 }
 
 // Counts the photons of each light. Photons are ordered by light, and their weights sum to 1.
-Counts countsOf(const World& world, const PhotonShares& shares) {
+Counts countsOf(const World& world, const PhotonsPerLight& shares) {
   Counts counts(world.lights.size(), 0);
   size_t before = 0;
   for (uint64_t photon = 0; photon < shares.total(); ++photon) {
@@ -42,34 +41,34 @@ Counts countsOf(const World& world, const PhotonShares& shares) {
 }
 Counts countsOf(const std::vector<float>& intensities, uint64_t photons) {
   const World world = lampsOf(intensities);
-  return countsOf(world, PhotonShares(world.lights, photons));
+  return countsOf(world, PhotonsPerLight(world.lights, photons));
 }
 
-TEST(PhotonShares, AreInProportionToPower) {
+TEST(PhotonsPerLight, AreInProportionToPower) {
   EXPECT_EQ(countsOf({1, 2, 5, 1000}, 10080), (Counts{10, 20, 50, 10000}));
   EXPECT_EQ(countsOf({1000, 5, 2, 1}, 10080), (Counts{10000, 50, 20, 10}));
 }
 
-TEST(PhotonShares, WhatIsLeftGoesToTheLargestRemainders) {
+TEST(PhotonsPerLight, WhatIsLeftGoesToTheLargestRemainders) {
   EXPECT_EQ(countsOf({1, 1, 1}, 100), (Counts{34, 33, 33}));  // among equals the first
   EXPECT_EQ(countsOf({26, 37, 37}, 10), (Counts{2, 4, 4}));   // shares 2.6, 3.7, 3.7
   EXPECT_EQ(countsOf({51, 53, 56}, 16), (Counts{5, 5, 6}));   // shares 5.1, 5.3, 5.6
 }
 
 // One photon already exceeds such a light's share, whatever its remainder.
-TEST(PhotonShares, ALightWithAShareBelowOneGetsExactlyOne) {
+TEST(PhotonsPerLight, ALightWithAShareBelowOneGetsExactlyOne) {
   EXPECT_EQ(countsOf({555, 555, 90}, 12), (Counts{6, 5, 1}));  // shares 5.55, 5.55, 0.9
   EXPECT_EQ(countsOf({1e-6f, 1, 1e-9f}, 1000), (Counts{1, 999, 1}));
   EXPECT_EQ(countsOf({1, 1, 1, 1, 1}, 2), (Counts{1, 1, 1, 1, 1}));
 }
 
-TEST(PhotonShares, ALightWithoutPowerGetsNone) {
+TEST(PhotonsPerLight, ALightWithoutPowerGetsNone) {
   EXPECT_EQ(countsOf({0, 3, 0, 1, 0}, 8), (Counts{0, 6, 0, 2, 0}));
   EXPECT_EQ(countsOf({0, 3, 0, 1, 0}, 1), (Counts{0, 1, 0, 1, 0}));
 }
 
 // Every light's count is within one photon of its share, and all photons are distributed.
-TEST(PhotonShares, ManyLightsOfAnyPower) {
+TEST(PhotonsPerLight, ManyLightsOfAnyPower) {
   std::vector<float> intensities;
   Rng rng(3, 0);
   double sum = 0.0;
@@ -90,7 +89,7 @@ TEST(PhotonShares, ManyLightsOfAnyPower) {
 
 // In a closed box of albedo 0.5 each photon reflects half of its flux at every hit. The number of
 // hits has mean 2 and variance 2, so n photons reflect their emitted flux to within 0.71/sqrt(n).
-TEST(PhotonShares, WeightsKeepTheEnergyOfEachLight) {
+TEST(PhotonsPerLight, WeightsKeepTheEnergyOfEachLight) {
   const World world = greyCube({{1, 0, 0}, {0, 0, 0.04f}});
   const VplTable vpls = keptVpls(world, {{"count", "200"}}, {{"count", "4000"}});
   const EstimateResult result =

@@ -15,7 +15,7 @@ from random import Random
 from workbench import COMMANDS, FULL, INPUT, OK, SCENE, Command, Workbench, moments, needs_shim
 
 # A slow disk leaves time to change what has not been read yet.
-SLOW_DISK = {"read_delay_us": 10000, "read_bytes": 16384}
+SLOW_DISK = {"read_delay_us": 4000, "read_bytes": 16384}
 
 
 def truncate(path: Path, random: Random) -> None:

@@ -3,8 +3,8 @@
 
     tests/inspect/round_trip.py build/release/bin SCENE...   # --size 48x32 --seeds 12 detect more
 
-Path traces both scenes through each camera with the seeds 1 to n. The differences at a pixel, one
-for each seed, are samples of a distribution whose mean is 0 where both agree; Student's t tests
+Path traces both scenes through each camera with the seeds 1 to n, or to 2 if the images of a seed
+are the same up to rounding. The differences at a pixel, one for each seed, are samples of a distribution whose mean is 0 where both agree; Student's t tests
 that. So are those of blocks of 2 x 2, 4 x 4, ... pixels up to the whole image, whose mean must also
 lie within three standard errors. Scenes that cannot be read are named and skipped.
 """
@@ -89,30 +89,19 @@ def difference(a: npt.NDArray[Any], b: npt.NDArray[Any]) -> str:
 def compare(
     options: argparse.Namespace, scene: Path, copy: Path, first: list[Any], second: list[Any]
 ) -> str:
-    images = []
-    for file, view in ((scene, first), (copy, second)):
-        for seed in range(1, options.seeds + 1):
-            out = copy.parent.parent / "image.exr"
-            problem = run(
-                options.bin / "vpl-render",
-                file,
-                *view,
-                "-o",
-                out,
-                "--integrator",
-                "path",
-                "--spp",
-                options.spp,
-                "--size",
-                options.size,
-                "--seed",
-                seed,
-                "--quiet",
-            )
-            if problem:
+    sets: tuple[list[npt.NDArray[Any]], list[npt.NDArray[Any]]] = ([], [])
+    out = copy.parent.parent / "image.exr"
+    for seed in range(1, options.seeds + 1):
+        for images, file, view in zip(sets, (scene, copy), (first, second), strict=True):
+            command = [options.bin / "vpl-render", file, *view, "-o", out, "--integrator", "path"]
+            command += ["--spp", options.spp, "--size", options.size, "--seed", seed, "--quiet"]
+            if problem := run(*command):
                 return problem
             images.append(pixels(out))
-    return difference(np.stack(images[: options.seeds]), np.stack(images[options.seeds :]))
+        # Most copies are the same scene down to rounding, whose images of a seed are the same.
+        if seed == 2 and np.allclose(sets[0], sets[1], rtol=ROUNDING, atol=1e-9):
+            return ""
+    return difference(np.stack(sets[0]), np.stack(sets[1]))
 
 
 def check(options: argparse.Namespace, scene: Path) -> str | None:

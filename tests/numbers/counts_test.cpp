@@ -5,7 +5,7 @@
 
 #include "core/random_streams.h"
 #include "tests/support/pipeline.h"
-#include "tools/estimate/photon_shares.h"
+#include "tools/estimate/photons_per_light.h"
 #include "tools/render/film/film.h"
 
 namespace bnvpl::test {
@@ -37,7 +37,7 @@ TEST(Counts, SharesOfManyPhotonsAreExact) {
   scene.lights[1].emission = Vec3(1.0f);
   const World world(std::move(scene));
   for (const uint64_t photons : {uint64_t{1} << 31, uint64_t{5000000000}, kMaxPhotons}) {
-    const PhotonShares shares(world.lights, photons);
+    const PhotonsPerLight shares(world.lights, photons);
     EXPECT_EQ(shares.total(), photons);
     const double first = 1.0 / double{shares.weight(0)};
     EXPECT_NEAR(first, double(photons) / 1000001.0, 1.0 + 1e-6 * first);

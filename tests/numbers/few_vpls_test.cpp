@@ -123,13 +123,13 @@ TEST(FewVpls, AVplAtTheShadedPoint) {
   const Bsdf bsdf(world.scene, at);
   bool seesNothing = false;
   const auto gathered = [&](const std::vector<Vec3>& offsets, const std::string& method,
-                            float clamp2) {
+                            float size2) {
     VplLights vpls;
     for (const Vec3 offset : offsets) {
       vpls.position.push_back(at.position + offset);
       vpls.normal.push_back(-at.ng);
       vpls.intensity.push_back(Vec3(1.0f));
-      vpls.clamp2.push_back(clamp2);
+      vpls.size2.push_back(size2);
     }
     Given options{{"gather", method}};
     if (method == "interleaved") options.emplace_back("interleave", "1");  // all VPLs in one sample
@@ -145,14 +145,14 @@ TEST(FewVpls, AVplAtTheShadedPoint) {
     return out.radiance;
   };
   for (const std::string& method : gathers()) {
-    for (const float clamp2 : {1e-12f, 1e-4f}) {
-      EXPECT_EQ(gathered({Vec3()}, method, clamp2), Vec3());
-      EXPECT_EQ(gathered({Vec3(), Vec3(), Vec3()}, method, clamp2), Vec3());
-      gathered({Vec3(), at.ng * 1e-7f, at.ng * 1e-30f}, method, clamp2);
-      const Vec3 lit = gathered({at.ng * 0.1f}, method, clamp2);
+    for (const float size2 : {1e-12f, 1e-4f}) {
+      EXPECT_EQ(gathered({Vec3()}, method, size2), Vec3());
+      EXPECT_EQ(gathered({Vec3(), Vec3(), Vec3()}, method, size2), Vec3());
+      gathered({Vec3(), at.ng * 1e-7f, at.ng * 1e-30f}, method, size2);
+      const Vec3 lit = gathered({at.ng * 0.1f}, method, size2);
       if (seesNothing) continue;
       EXPECT_GT(lit.x, 0.0f);
-      const Vec3 both = gathered({Vec3(), at.ng * 0.1f}, "all", clamp2);
+      const Vec3 both = gathered({Vec3(), at.ng * 0.1f}, "all", size2);
       EXPECT_NEAR(both.x, lit.x, 1e-5f * lit.x);
     }
   }

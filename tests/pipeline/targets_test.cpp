@@ -91,6 +91,7 @@ TEST_F(Targets, DevicesAndStreamsAreRefused) {
          {std::string(stream) + ": is an open stream", "name a file"});
     fail("vpl-place", file + stream, kExitOutput, {"open stream"});
   }
+  fail("vpl-place", place + "-", kExitOutput, {"-: means standard output", "name a file"});
   fail("vpl-inspect", "info " + path("c.vpl") + " --stats /dev/stdout", kExitOutput, {"stream"});
   EXPECT_TRUE(listing().empty());
   EXPECT_TRUE(fs::is_symlink("/dev/stdout") && fs::is_character_file("/dev/null"));

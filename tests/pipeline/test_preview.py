@@ -136,14 +136,14 @@ class Preview(unittest.TestCase):
 
     def test_it_shows_the_film_before_the_end(self) -> None:
         viewer = self.viewer()
-        self.render(viewer.port, "--spp", "1k")
+        self.render(viewer.port, "--spp", "256", "--threads", "2")
         viewer.thread.join(20)
         updates = len(viewer.visits[0]) - 2
         self.assertGreater(updates, 8)  # four blocks at the end
 
     def test_a_viewer_that_comes_back_gets_all(self) -> None:
         viewer = self.viewer(leave_after=4)
-        self.render(viewer.port, "--spp", "2k")
+        self.render(viewer.port, "--spp", "512", "--threads", "2")
         viewer.thread.join(20)
         self.assertEqual(len(viewer.visits), 2)
         self.expect_image(self.film_of(viewer.visits[1]))

@@ -129,9 +129,9 @@ TEST_F(TwoRooms, OneSetOfVplsLightsEachView) {
     seen.scene.film = view.film;
     const Given indirect{{"only", "indirect"}, {"spp", "4"}};
     const double compensated = renderVpls(seen, lit, indirect).stats.indirect,
-                 alone = indirectByVpls(seen, lit, {{"clamp", "0.1"}});
+                 alone = indirectByVpls(seen, lit, {{"gather", "tilecuts"}, {"clamp", "0.1"}});
     VplTable own = lightVpls(seen, keptVpls(seen, {{"count", "2000"}}), {{"photons", "1M"}}).table;
-    const double byOwn = indirectByVpls(seen, own, {{"clamp", "0.1"}});
+    const double byOwn = indirectByVpls(seen, own, {{"gather", "tilecuts"}, {"clamp", "0.1"}});
     EXPECT_NEAR(alone / byOwn, 1.0, 0.08);
     EXPECT_NEAR(compensated / renderVpls(seen, own, indirect).stats.indirect, 1.0, 0.05);
   }

@@ -31,7 +31,7 @@ World shiny(Scene scene, bool mirror) {
 }
 
 VplTable fewVpls(const World& world) {
-  return litVpls(world, {{"count", "300"}}, {}, {{"count", "6k"}});
+  return litVpls(world, {{"count", "300"}}, {{"emit-points", "1"}}, {{"count", "6k"}});
 }
 
 Render by(const World& world, const VplTable& lit, const char* photons, const char* spp) {

@@ -18,7 +18,7 @@ Vec3 transferOf(const VplLights& vpls, size_t i, const Bsdf& bsdf) {
   if (!unoccludedTransfer(vpls, i, bsdf, found)) return {};
   if (!found.sampled) return found.transfer;
   const Vec3 d = vpls.position[i] - bsdf.point().position;
-  return sampledSphericalTransfer({d, vpls.normal[i], vpls.clamp2[i]}, bsdf, 512, 7 + i);
+  return sampledSphericalTransfer({d, vpls.normal[i], vpls.size2[i]}, bsdf, 512, 7 + i);
 }
 
 float sumOf(Vec3 v) { return v.x + v.y + v.z; }

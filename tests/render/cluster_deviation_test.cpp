@@ -30,7 +30,7 @@ LightNode cluster(Rng& rng) {
   n.cosHalfAngle = 2.0f * rng.next() - 1.0f;
   n.sinHalfAngle = n.cosHalfAngle > 0.0f ? std::sqrt(1.0f - n.cosHalfAngle * n.cosHalfAngle) : 1.0f;
   n.intensity = somewhere(rng);
-  n.clamp2 = 0.01f * rng.next();
+  n.size2 = 0.01f * rng.next();
   return n;
 }
 

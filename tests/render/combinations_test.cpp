@@ -14,7 +14,8 @@ class Combinations : public testing::Test {
  protected:
   Combinations() : world("cornell/scene.toml") {
     world.scene.film = {16, 12};
-    lit = litVpls(world, {{"count", "200"}}, {{"photons", "50k"}}, {{"count", "4k"}});
+    lit = litVpls(world, {{"count", "200"}}, {{"photons", "50k"}, {"emit-points", "1"}},
+                  {{"count", "4k"}});
   }
   // The mean of an image, or nothing if the combination is refused.
   std::optional<double> indirect(const Given& options) const {

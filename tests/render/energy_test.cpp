@@ -22,7 +22,7 @@ TEST_P(Furnace, IndirectLightIsTheGeometricSeries) {
   World world(c.scene);
   world.scene.film = {32, 32};  // the light is the same all over the room
   const double expected = c.rho * c.rho / (1.0 - c.rho);
-  const Given plain = with(kPlainRender, {{"layers", "direct,indirect"}});
+  const Given plain = with(kPlainRender, {{"gather", "tilecuts"}, {"layers", "direct,indirect"}});
   const Given nearField = with(plain, {{"compensate", "near-field"}, {"clamp", "2"}});
   // One set of 300 VPLs is up to 1 % off by its noise.
   const uint64_t seeds = 1200 / c.vpls;
@@ -75,7 +75,8 @@ TEST(ManyBounces, VplsAgreeWithThePathTracer) {
   small.scene.film = {48, 48};
   for (const char* bounces : {"1", "2", "8"}) {
     const VplTable lit = litVpls(world, {{"count", "800"}}, {{"max-bounces", bounces}});
-    const double vpl = indirectByVpls(small, lit, {{"clamp", "0.3"}, {"spp", "1"}});
+    const double vpl =
+        indirectByVpls(small, lit, {{"gather", "tilecuts"}, {"clamp", "0.3"}, {"spp", "1"}});
     const double path = indirectByPaths(small, {{"spp", "256"}, {"max-bounces", bounces}});
     EXPECT_NEAR(vpl / path, 1.0, 0.03) << bounces << " bounces";
   }

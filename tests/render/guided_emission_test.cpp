@@ -60,7 +60,8 @@ TEST(GuidedEmission, VplsOfPhotonsAndPathsHaveTheSameLight) {
 // Photons over the metal and near-field rays share the light by the density of the guide.
 TEST(GuidedEmission, CausticPhotonsAndRaysShareTheLight) {
   const World world(sunnyRoom());
-  const VplTable lit = lightVpls(world, vplsOf(world), kFewPhotons).table;
+  const Given estimated = with(kFewPhotons, {{"emit-points", "1"}});
+  const VplTable lit = lightVpls(world, vplsOf(world), estimated).table;
   const auto by = [&](const char* photons, const char* spp) {
     return [&world, &lit, photons, spp](uint64_t seed) {
       return renderVpls(world, lit,

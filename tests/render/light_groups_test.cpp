@@ -40,7 +40,8 @@ Scene groupedRoom(uint32_t side, uint32_t only = kNone, bool shiny = false) {
 }
 
 VplTable litIn(const World& world) {
-  return litVpls(world, {{"count", "300"}}, {{"photons", "100k"}}, {{"count", "4k"}});
+  return litVpls(world, {{"count", "300"}}, {{"photons", "100k"}, {"emit-points", "1"}},
+                 {{"count", "4k"}});
 }
 
 std::vector<Given> waysToRender() {

@@ -37,7 +37,7 @@ TEST(LightTree, EveryNodeHoldsItsLights) {
       representativeInside |= i == node.representative;
       EXPECT_GE(dot(vpls.normal[i], node.axis), node.cosHalfAngle - 1e-4f);
       EXPECT_EQ(node.bounds.distanceSquared(vpls.position[i]), 0.0f);
-      EXPECT_GE(vpls.clamp2[i], node.clamp2);
+      EXPECT_GE(vpls.size2[i], node.size2);
     }
     EXPECT_TRUE(representativeInside);
     EXPECT_NEAR(mean(sum), mean(node.intensity), 1e-4f * mean(sum));

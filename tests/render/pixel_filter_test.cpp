@@ -222,14 +222,15 @@ TEST(PixelFilter, TilesAgreeWithPathsAndPlainSamples) {
   for (Material& m : scene.materials)
     if (m.name == "Green") m.model = metal;
   const World world(std::move(scene));
-  const VplTable lit = litVpls(world);
+  const VplTable lit = litVpls(world, {{"count", "100"}}, {{"photons", "50k"}}, {{"count", "2k"}});
   for (const char* filter : {"gaussian", "mitchell"}) {
     EXPECT_TRUE(
         sameExpectation(filtered(world, lit, filter, {{"integrator", "path"}, {"spp", "64"}}),
                         filtered(world, lit, filter, {{"integrator", "guided"}, {"spp", "8"}})))
         << filter;
   }
-  const VplTable few = litVpls(plain, {{"count", "300"}}, {{"photons", "50k"}});
+  const VplTable few =
+      litVpls(plain, {{"count", "300"}}, {{"photons", "50k"}, {"emit-points", "1"}});
   const Given indirect{{"only", "indirect"}, {"spp", "8"}, {"fireflies", "keep"}};
   EXPECT_TRUE(sameExpectation(
       filtered(plain, few, "mitchell", indirect),

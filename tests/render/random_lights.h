@@ -18,7 +18,7 @@ inline VplLights lightsAbout(size_t count, Rng& rng) {
     const float u = rng.next(), v = rng.next();
     lights.normal.push_back(wall ? Vec3{0, 1, 0} : sampleSphere(u, v));
     lights.intensity.push_back(Vec3{x + 0.1f, z, 0.1f} * (rng.next() < 0.1f ? 20.0f : 1.0f));
-    lights.clamp2.push_back(0.01f * rng.next() + 1e-6f);
+    lights.size2.push_back(0.01f * rng.next() + 1e-6f);
   }
   return lights;
 }

@@ -174,7 +174,7 @@ TEST(SameExpectation, PathsAndPhotonsOverEveryModel) {
       {"glTF, frosted glass", {gltf, frosted}}};
   for (const auto& [name, models] : walls) {
     Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "cornell/scene.toml");
-    scene.film = {16, 16};
+    scene.film = {12, 12};
     for (Material& m : scene.materials) {
       if (m.name == "Green") m.model = models[0];
       if (m.name == "Red") m.model = models[1];
@@ -336,7 +336,7 @@ TEST(SameExpectation, NearSpecularLobesAndLearnedLights) {
 
 TEST(SameExpectation, TileCutsAndAllVpls) {
   for (const char* name : {"cornell/scene.toml", "veach-door/scene.toml"}) {
-    const World world = worldOf(name, 25, 19);
+    const World world = worldOf(name, 20, 15);
     const VplTable lit =
         litVpls(world, {{"count", "300"}}, {{"photons", "50k"}}, {{"count", "6000"}});
     const Given all{{"only", "indirect"}};

@@ -13,7 +13,8 @@ namespace {
 constexpr uint32_t kHidden = 1200;  // point lights above the ceiling
 
 VplTable litBy(const World& world) {
-  return litVpls(world, {{"count", "150"}}, {{"photons", "100k"}}, {{"count", "3k"}});
+  return litVpls(world, {{"count", "150"}}, {{"photons", "100k"}, {"emit-points", "1"}},
+                 {{"count", "3k"}});
 }
 
 SpatialLightSampler learned(const World& world, const VplTable& vpls) {
@@ -32,7 +33,7 @@ TEST(SpatialLightSampler, FewRaysGoToHiddenLights) {
     const LearnedStrata strata = lights.at(vpls.position[i], vpls.normal[i]);
     ASSERT_NE(strata.all, nullptr);
     float u = rng.next();
-    const LightPlace place = strata.all->place(strata.pick(u), {u, rng.next()});
+    const LightPoint place = strata.all->place(strata.pick(u), {u, rng.next()});
     seen += place.light < 3;
     ASSERT_GT(strata.density(place), 0.0f);
   }

@@ -119,7 +119,8 @@ TYPED_TEST(EachLightKind, BoundWhatAConeEmits) {
 
 // The removed light is reported: with it, every kind gives the same image.
 TEST(LightKindsOfImages, DifferOnlyInWhatTheyRemove) {
-  const World world("furnace/scene.toml");
+  World world("furnace/scene.toml");
+  world.scene.film = {24, 24};
   const VplTable lit = litVpls(world, {{"count", "300"}});
   const auto statsOf = [&](const char* light) {
     return renderVpls(world, lit, with(kPlainRender, {{"gather", "all"}, {"light", light}})).stats;

@@ -68,11 +68,11 @@ TEST(LightStrata, DrawnByTurnsDrawingAround) {
 void expectConsistent(const LightStrata& strata, const LightSet& lights) {
   double all = 0.0;
   for (uint32_t s = 0; s < strata.size(); ++s) {
-    all += double{strata.share(s)};
+    all += double{strata.powerFraction(s)};
     for (uint32_t k = 0; k < 3; ++k) {
-      const LightPlace place = strata.place(s, r2Sequence(k, 0.1, 0.2));
+      const LightPoint place = strata.place(s, r2Sequence(k, 0.1, 0.2));
       EXPECT_EQ(strata.stratumOf(place), s);
-      EXPECT_EQ(strata.lightShare(place.light), lights.pickProbability(place.light));
+      EXPECT_EQ(strata.pickProbability(place.light), lights.pickProbability(place.light));
     }
   }
   EXPECT_NEAR(all, 1.0, 1e-4);

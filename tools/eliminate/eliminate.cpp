@@ -48,7 +48,7 @@ VplTable eliminate(const VplTable& candidates, const Values& options, const Acce
                      " needs the scene; add --scene SCENE");
   }
   requireEnough(candidates.size(), options[kEliminateCountOption]);
-  const Kept kept = method.run({candidates, accel, lights, progress}, options);
+  const EliminateResult kept = method.run({candidates, accel, lights, progress}, options);
   VplTable table = keepRows(candidates, kept.rows);
   if (table.stage == VplStage::Candidates) table.stage = VplStage::Eliminated;
   table.radius = kept.radius;

@@ -19,7 +19,7 @@ inline constexpr WholeOption kEliminateCountOption =
 inline constexpr OptionKey<uint64_t> kCameraPointsKey{"camera-points"};
 
 // Rows that a method keeps.
-struct Kept {
+struct EliminateResult {
   std::vector<uint32_t> rows;  // ascending, so they stay in path order
   std::vector<float> radius;   // one per row, world units: it stands for 2 sqrt(3) r^2 of surface
   double rMax = 0.0;           // sqrt(A / (2 sqrt(3) N)), world units
@@ -38,7 +38,7 @@ struct EliminateInputs {
 struct EliminateMethod {
   std::string_view name, summary;
   std::span<const Option> options;
-  Kept (*run)(const EliminateInputs&, const Values&);
+  EliminateResult (*run)(const EliminateInputs&, const Values&);
   VplStage takes = VplStage::Candidates;  // stage of the input table
   bool needsScene = false;
 };

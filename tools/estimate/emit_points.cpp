@@ -7,7 +7,7 @@
 
 namespace bnvpl {
 
-uint64_t placeHash(Vec3 p) {
+uint64_t positionHash(Vec3 p) {
   const uint64_t x = std::bit_cast<uint32_t>(p.x), y = std::bit_cast<uint32_t>(p.y);
   return mix64(x << 32 | y) + std::bit_cast<uint32_t>(p.z);
 }
@@ -16,7 +16,7 @@ void EmitPoints::offer(size_t vpl, double weight, const SurfacePoint& hit) {
   if (perVpl_ == 0 || !(weight > 0.0)) return;
   // Relative to the VPL, so that the unit of length does not matter.
   const uint64_t key =
-      random64(key_, vpl, 0) ^ placeHash((hit.position - position_[vpl]) / radius_[vpl]);
+      random64(key_, vpl, 0) ^ positionHash((hit.position - position_[vpl]) / radius_[vpl]);
   for (size_t k = 0; k < perVpl_; ++k) {
     EmitPoint& winner = winners_[vpl * perVpl_ + k];
     const double u = (static_cast<double>(random64(key, k, 0) >> 12) + 0.5) * 0x1p-52;  // in (0, 1)

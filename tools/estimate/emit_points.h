@@ -21,7 +21,7 @@ inline constexpr WholeOption kEmitPointsOption = wholeOption(
     "emits from its position");
 
 // Identifies a hit by its place. Hits are random points, so that it can serve as a random number.
-uint64_t placeHash(Vec3 p);
+uint64_t positionHash(Vec3 p);
 
 // Weighted reservoir of one hit (Efraimidis & Spirakis 2006): each hit draws the key -ln(u) /
 // weight, and the smallest key wins, so a hit wins with a probability proportional to its weight.

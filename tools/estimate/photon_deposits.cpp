@@ -105,7 +105,7 @@ PhotonStart startOf(const LightSet& lights, const PhotonRun& run, uint64_t photo
 }  // namespace
 
 PhotonSums tracePhotons(const EstimateInputs& in, const PhotonRun& run, const DepositRule& rule) {
-  const PhotonShares& shares = run.shares;
+  const PhotonsPerLight& shares = run.shares;
   const ProgressFn& progress = in.progress;
   const WorkControls& controls = in.controls;
   if (controls.source) return sumsOfShards(in, run);
@@ -189,7 +189,7 @@ PhotonDeposits::PhotonDeposits(const EstimateInputs& in, float radius, uint64_t 
       groups_(in.accel.scene().lightGroupCount()),
       photonPower_(double{mean(in.lights.totalPower())} / static_cast<double>(photons)),
       fixed_(photonPower_, photons),
-      perPhotonPower_(1.0 / photonPower_),
+      invPhotonPower_(1.0 / photonPower_),
       squareUnit_(std::ldexp(1.0, -std::min(36, 54 - static_cast<int>(std::bit_width(photons))))),
       coverage_(in.vpls.position, in.vpls.normal, reachOf(in.vpls, radius), in.accel) {}
 
@@ -199,7 +199,7 @@ namespace {
 // are less than a unit.
 int64_t roundedAtRandom(double value, Vec3 at) {
   const double low = std::floor(value);
-  const bool up = double{toUnitFloat(mix64(placeHash(at)))} < value - low;
+  const bool up = double{toUnitFloat(mix64(positionHash(at)))} < value - low;
   return static_cast<int64_t>(low) + (up ? 1 : 0);
 }
 
@@ -216,7 +216,7 @@ void PhotonDeposits::deposit(uint32_t vpl, const PhotonHit& hit, Vec3 flux,
     if (hit.firstBounce) addChecked(s.firstBounce[c], units);
     if (hit.onlyPhotons) addChecked(s.onlyPhotons[c], units);
   }
-  const double relative = double{mean(flux)} * perPhotonPower_;
+  const double relative = double{mean(flux)} * invPhotonPower_;
   const double square = relative * relative / squareUnit_;
   addChecked(s.squares, roundedAtRandom(square, hit.point.position));
   addChecked(s.squaresByPower, roundedAtRandom(square * double{hit.density}, hit.point.position));
@@ -246,7 +246,7 @@ VplGroups PhotonDeposits::groupFlux(const PhotonSums& sums) const {
 EstimateResult estimateByPhotons(const EstimateInputs& in, const Values& options,
                                  const DepositRule& rule) {
   in.lights.requirePower();
-  const PhotonShares shares(in.lights, options[kPhotonsOption]);
+  const PhotonsPerLight shares(in.lights, options[kPhotonsOption]);
   const PhotonDeposits deposits(in, options.real32(kRadiusOption), shares.total());
   const auto maxBounces = static_cast<unsigned>(options[kPhotonBouncesOption]);
   const LearnedEmission emission = learnPhotonEmission(in, options, maxBounces, shares.total());

@@ -10,8 +10,8 @@
 #include "tools/estimate/estimate.h"
 #include "tools/estimate/lit_columns.h"
 #include "tools/estimate/photon_emission.h"
-#include "tools/estimate/photon_shares.h"
 #include "tools/estimate/photon_sums.h"
+#include "tools/estimate/photons_per_light.h"
 #include "transport/coverage.h"
 #include "transport/emission_guide.h"
 #include "transport/vpl_groups.h"
@@ -50,10 +50,10 @@ class PhotonDeposits {
  public:
   PhotonDeposits(const EstimateInputs& in, float radius, uint64_t photons);
 
-  // Photons share the flux of VPL i with paths: their deposits weigh g / (g + balance[i]) by the
-  // density g of their start (PhotonMis). Light that only photons find weighs 1, and so does all
-  // unless a balance is set.
-  void setMisRatios(std::span<const float> balance) { misRatios_ = balance; }
+  // Photons share the flux of VPL i with paths: their deposits weigh g / (g + misRatios[i]) by
+  // the density g of their start (PhotonMis). Light that only photons find weighs 1, and so does
+  // all unless ratios are set.
+  void setMisRatios(std::span<const float> misRatios) { misRatios_ = misRatios; }
   // deposit() adds all or a part of a hit's flux, weighed, to one VPL. tally() records what became
   // of a whole hit.
   void deposit(uint32_t vpl, const PhotonHit& hit, Vec3 flux, PhotonSums& sums) const;
@@ -81,7 +81,7 @@ class PhotonDeposits {
   uint32_t groups_;
   double photonPower_;
   FixedPoint fixed_;
-  double perPhotonPower_;
+  double invPhotonPower_;
   // Unit of VplSum::squares, which leaves room for the deposits of all photons.
   double squareUnit_;
   Coverage coverage_;
@@ -102,7 +102,7 @@ struct PhotonRun {
   uint64_t key;       // random numbers
   size_t emitPoints;  // per VPL
   unsigned maxBounces;
-  const PhotonShares& shares;
+  const PhotonsPerLight& shares;
   const PhotonDeposits& deposits;
   const EmissionGuide* guide = nullptr;  // null: photons by power
 };

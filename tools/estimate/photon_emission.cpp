@@ -43,7 +43,7 @@ LearnedEmission learnPhotonEmission(const EstimateInputs& in, const Values& opti
   const CostTrial::Part part(in.controls.trial,
                              static_cast<double>(pilot) / static_cast<double>(sent));
   const uint64_t key = streamKey(options[kSeedOption], RandomStream::PhotonEmission);
-  const PhotonShares shares(in.lights, std::max<uint64_t>(1, sent / kPilotPhotonsPerFluxPhoton));
+  const PhotonsPerLight shares(in.lights, std::max<uint64_t>(1, sent / kPilotPhotonsPerFluxPhoton));
   const PhotonDeposits deposits(in, options.real32(kRadiusOption), shares.total());
   const std::vector<double> weights =
       weightsByFlux(in, deposits, {mix64(key), 0, maxBounces, shares, deposits});

@@ -13,8 +13,8 @@ inline constexpr auto kEmissionOption =
                 "photons start where pilot photons found ways to VPLs, or in proportion to power"));
 
 // Learns from pilot photons, a small share of `photons`, where photons that reach VPLs start.
-// The guide minimises the sum over VPLs of variance over flux, where a VPL's flux is not taken
-// below a tenth of the mean. Learns nothing with --emission power, and in a merge, which traces no
+// The guide minimises the sum over VPLs of variance over flux, with a tenth of the mean flux added
+// to each VPL's. Learns nothing with --emission power, and in a merge, which traces no
 // photon. `maxBounces`: that of the photons.
 LearnedEmission learnPhotonEmission(const EstimateInputs& in, const Values& options,
                                     unsigned maxBounces, uint64_t photons);

@@ -33,7 +33,7 @@ struct JoinedRows {
   const ViewTurns& turns;
 };
 
-// Traces and joins chunks until there are `count` rows. Throws InputError where effortFor(count)
+// Traces and joins chunks until there are `count` rows. Throws InputError where maxPathsFor(count)
 // paths do not yield them.
 PlaceResult collectRows(const std::string& scene, const JoinedRows& whole,
                         const ProgressFn& progress, const TracePaths& tracePaths);

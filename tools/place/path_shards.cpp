@@ -95,7 +95,7 @@ PlaceResult traceShard(const std::string& scene, uint64_t count, double spare,
   if (progress) progress(trace.soFar().rows);
   Wave wave;
   while (trace.rowsLeft() > 0.0) {
-    if (trace.paths() >= effortFor(count)) {
+    if (trace.paths() >= maxPathsFor(count)) {
       if (trace.soFar().rows >= trace.rowsOfPart()) break;  // what is left is spare
       failTooFew(scene, trace.soFar(), trace.soFar().rows, trace.rowsOfPart());
     }

@@ -8,7 +8,7 @@ namespace bnvpl {
 
 namespace {
 
-// A view is refused if it yields less than one candidate in kPathsPerCandidate paths; the first
+// Placement fails if it finds less than one candidate in kPathsPerCandidate paths; the first
 // kFreePaths paths do not count.
 constexpr uint64_t kPathsPerCandidate = 200;
 constexpr uint64_t kFreePaths = 1000000;
@@ -37,7 +37,7 @@ void dropCutPath(const PathRows& chunk, size_t take, PlaceResult& result) {
 
 }  // namespace
 
-uint64_t effortFor(uint64_t count) { return kFreePaths + kPathsPerCandidate * count; }
+uint64_t maxPathsFor(uint64_t count) { return kFreePaths + kPathsPerCandidate * count; }
 
 [[noreturn]] void failTooFew(const std::string& scene, const PlaceResult& r, uint64_t found,
                              uint64_t count) {

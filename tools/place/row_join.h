@@ -12,8 +12,9 @@
 namespace bnvpl {
 
 inline constexpr uint64_t kChunksPerWave = 64;
-// Number of paths after which a view is refused if it has not yielded `count` candidates.
-uint64_t effortFor(uint64_t count);
+// Number of paths over all views after which placement fails if it has not found `count`
+// candidates.
+uint64_t maxPathsFor(uint64_t count);
 // Throws InputError with the number of paths in `r` and how they ended.
 [[noreturn]] void failTooFew(const std::string& scene, const PlaceResult& r, uint64_t found,
                              uint64_t count);

@@ -12,7 +12,8 @@ namespace bnvpl {
 inline constexpr float kRoughAlpha = 0.3f;
 
 // Rough: diffuse reflection, and glossy from kRoughAlpha on. Specular: mirrors, near-specular lobes
-// below it, and all that crosses the surface.
+// below it, and all that crosses the surface. pbrt's Specular is delta lobes only; those have
+// Bsdf::specularIsDelta().
 enum class LobeGroup { Rough, Specular };
 
 // The quantity that a path carries. It decides which normal the cosine refers to, and whether

@@ -26,6 +26,8 @@ DEFAULT_GATHER = "tilecuts"  # the default of vpl-render, which a viewer shows f
 EQUAL_VPLS, EQUAL_TIME = "equal VPLs", "equal time"
 MAX_SPP = 1024  # at equal time
 CLOSE_ENOUGH = 0.05  # to the time, for a number of samples that has been run
+TOO_LONG = 1.25  # times the time, for a run of fewer samples than a first trial has
+MAX_TRIALS = 4
 REFUSED = 2  # exit code of vpl-render
 LAYERS = ("", "indirect")
 SHAPES = (
@@ -181,20 +183,28 @@ def paired(size: dict[str, Any], gather: str, compensate: str) -> bool:
 
 
 def fitting_spp(cpu_s: Callable[[int], float], few: int, time_s: float) -> int:
-    """Samples a pixel whose run takes `time_s` CPU seconds, for a time that grows linearly.
+    """Samples a pixel whose run takes `time_s` CPU seconds; 0 if the run of one sample is too long.
 
-    Preparations take most of the time of a few samples, so a second trial has as many as would fit
-    without them.
+    Preparations take most of the time of a few samples, and further samples may cost less than the
+    first. So lines through two trials lead to the number, which is tried itself.
     """
     few_s = max(cpu_s(few), 1e-3)
     if few_s > time_s:
-        return round(few * time_s / few_s)
-    many = min(max(math.floor(few * time_s / few_s), 2 * few), MAX_SPP)
-    many_s = cpu_s(many)
-    if abs(many_s - time_s) < CLOSE_ENOUGH * time_s:
-        return many
-    fitting = pipeline.samples_within(time_s, (few, few_s), (many, many_s))
-    return min(MAX_SPP, round(fitting))
+        spp = round(few * time_s / few_s)
+        while spp > 0 and spp != few and cpu_s(spp) > TOO_LONG * time_s:
+            spp -= 1
+        return spp
+    before = (few, few_s)
+    spp = min(max(math.floor(few * time_s / few_s), 2 * few), MAX_SPP)
+    for _ in range(MAX_TRIALS):
+        trial = (spp, cpu_s(spp))
+        if abs(trial[1] - time_s) < CLOSE_ENOUGH * time_s:
+            break
+        fitting = min(MAX_SPP, max(1, round(pipeline.samples_within(time_s, before, trial))))
+        if fitting in (spp, before[0]):
+            return fitting
+        before, spp = trial, fitting
+    return spp
 
 
 def expected_s(rows: list[dict[str, Any]], count: int) -> float:

@@ -82,7 +82,7 @@ std::vector<uint32_t> eliminationStep(const Sorted& of, size_t keep, size_t coun
 
 // Each step gives the result of the sequential greedy algorithm: remove the heaviest candidate
 // until no more than it keeps are left; of equal weights, the higher row goes first.
-Kept run(const EliminateInputs& in, const Values& options) {
+EliminateResult run(const EliminateInputs& in, const Values& options) {
   const size_t count = options[kEliminateCountOption];
   Sorted remaining;
   remaining.row = mortonOrder(in.candidates.position);
@@ -102,7 +102,7 @@ Kept run(const EliminateInputs& in, const Values& options) {
   std::vector<std::pair<uint32_t, float>> kept;
   for (size_t i = 0; i < count; ++i) kept.emplace_back(remaining.row[i], remaining.radius[i]);
   std::sort(kept.begin(), kept.end());
-  Kept result;
+  EliminateResult result;
   result.rMax = radii.rMax;
   result.area = radii.area;
   for (const auto& [row, radius] : kept) {

@@ -30,7 +30,7 @@ std::vector<uint32_t> randomRows(size_t candidates, size_t count, uint64_t seed)
   return rows;
 }
 
-Kept run(const EliminateInputs& in, const Values& options) {
+EliminateResult run(const EliminateInputs& in, const Values& options) {
   const size_t count = options[kEliminateCountOption];
   const std::vector<uint32_t> order = mortonOrder(in.candidates.position);
   const CandidateRadii radii = candidateRadii(inOrder<Vec3>(in.candidates.position, order),
@@ -38,7 +38,8 @@ Kept run(const EliminateInputs& in, const Values& options) {
                                               static_cast<double>(count), options, in.progress);
   std::vector<float> radiusOfRow(order.size());
   parallelFor(order.size(), 4096, [&](size_t i) { radiusOfRow[order[i]] = radii.radius[i]; });
-  Kept kept{randomRows(order.size(), count, options[kSeedOption]), {}, radii.rMax, radii.area, {}};
+  EliminateResult kept{
+      randomRows(order.size(), count, options[kSeedOption]), {}, radii.rMax, radii.area, {}};
   std::sort(kept.rows.begin(), kept.rows.end());
   kept.radius = inOrder<float>(radiusOfRow, kept.rows);
   return kept;

@@ -82,8 +82,8 @@ std::vector<double> probabilities(const std::vector<double>& contributions, doub
   for (const double b : contributions) high += b;
   if (expected(high) > count) {
     throw InputError(
-        "even the VPLs that bring nothing add up to more than -n by their least "
-        "probability; lower --min-probability or keep more");
+        "the minimum probabilities of all VPLs add up to more than -n; lower --min-probability or "
+        "keep more");
   }
   for (int step = 0; step < 200; ++step) {
     const double middle = 0.5 * (low + high);
@@ -94,7 +94,7 @@ std::vector<double> probabilities(const std::vector<double>& contributions, doub
   return p;
 }
 
-Kept run(const EliminateInputs& in, const Values& options) {
+EliminateResult run(const EliminateInputs& in, const Values& options) {
   const VplTable& all = in.candidates;
   // A kept VPL stands for others elsewhere, so none may have a share of the surface.
   if (all.reachFactor > 0.0 || all.emitPoints != 1)
@@ -116,7 +116,7 @@ Kept run(const EliminateInputs& in, const Values& options) {
   const std::vector<double> p =
       probabilities(contributions, static_cast<double>(options[kEliminateCountOption]),
                     options[kMinProbabilityOption]);
-  Kept kept;
+  EliminateResult kept;
   std::vector<Vec3> position, normal;
   for (uint32_t i = 0; i < p.size(); ++i) {
     if (double{toUnitFloat(random64(key, all.id[i], 1))} >= p[i]) continue;

@@ -16,7 +16,7 @@ struct FromLights {
     return eliminate(all, resolve(eliminateSpec(), given), &world.accel, &world.lights);
   }
   double light(const VplTable& vpls) const {
-    const Given plain = with(kPlainRender, {{"only", "indirect"}, {"clamp", "0.01"}});
+    const Given plain = with(kPlainRender, {{"only", "indirect"}, {"clamp", "0.01"}, {"spp", "1"}});
     return meanOf(renderVpls(world, vpls, plain).image);
   }
   World world;

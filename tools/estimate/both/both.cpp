@@ -47,7 +47,7 @@ constexpr size_t kPhotonPilotPhase = 0, kPathPilotPhase = 1, kPhotonPhase = 2, k
 
 // Photons of a phase, and the sums of their deposits.
 struct PhotonWork {
-  PhotonShares shares;
+  PhotonsPerLight shares;
   PhotonDeposits deposits;
   PhotonSums sums;
 

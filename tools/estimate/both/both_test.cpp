@@ -64,7 +64,7 @@ TEST(Both, PhotonsAndPathsShareTheLightOfGuidedEmission) {
   const VplTable truth = lit(world, vpls, "paths", "1000", {{"points", "512"}});
 
   const EstimateInputs in{vpls, world.accel, world.lights, {}, {}};
-  const PhotonShares shares(world.lights, 1'000'000);
+  const PhotonsPerLight shares(world.lights, 1'000'000);
   const LearnedEmission learned =
       learnPhotonEmission(in, resolve(estimateSpec(), {{"method", "guarded"}}), 32, shares.total());
   EXPECT_GT(learned.useful.guided, 2.0 * learned.useful.byPower);

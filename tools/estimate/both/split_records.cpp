@@ -7,7 +7,7 @@ namespace bnvpl::methods::estimate::both {
 namespace {
 
 constexpr std::string_view kCount = "split.count", kCostShare = "split.cost",
-                           kPoints = "split.points", kMisRatio = "split.balance";
+                           kPoints = "split.points", kMisRatio = "split.mis_ratio";
 
 }  // namespace
 

@@ -57,7 +57,7 @@ struct VertexLights {
 using CompensateTile =
     std::function<size_t(const TileReceivers&, const VertexLights&, std::span<Gathered>)>;
 
-// Thread-safe. If all functions are empty, nothing is compensated, and no rays are traced for it.
+// Thread-safe. If all functions are empty, nothing is compensated.
 struct Compensation {
   // Looks up the VPLs at the hits of a batch of rays, so that memory accesses overlap. Skips
   // points that hit nothing.
@@ -68,7 +68,7 @@ struct Compensation {
                           const ReachGrid::Lookup* coverLookup, Rng& rng)>
       uncovered;
   CompensateTile tile = {};  // takes the place of rays
-  explicit operator bool() const { return uncovered != nullptr; }
+  bool byRays() const { return uncovered != nullptr; }  // whether near-field rays compensate
 };
 
 // Radius of a disk with the mean area of the VPLs' disks; 0 without VPLs.

@@ -217,7 +217,7 @@ class Passes {
     const Tile tile = tiles_.at(index);
     const uint32_t spp = state_.spp[index];
     const uint64_t key = random64(key_, state_.at.pass, kDrawPass);
-    const auto sequenceOffset = static_cast<uint32_t>(random64(key, index, kDrawOffset) >> 33);
+    const auto sequenceOffset = static_cast<uint32_t>(random64(key, 0, kDrawOffset) >> 33);
     std::vector<PixelSums> sums(tile.pixels());
     sampleTile(scene_, options_.filter, integrator_, key, tile,
                {0, spp, spp, kMaxPassSpp, sequenceOffset}, state_.groups.count,

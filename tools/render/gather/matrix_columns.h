@@ -88,6 +88,7 @@ class ClusterDraws {
   std::span<const VplDraw> of(const TileReceivers& tile, size_t sample) const {
     return draws_[(tile.sequenceOffset + sample) % kTurns];
   }
+  size_t clusters() const { return draws_[0].size(); }
   // Light of the VPLs of one turn at receiver i of the tile.
   Gathered gather(const GatherInputs& in, const TileReceivers& tile, size_t i) const;
 

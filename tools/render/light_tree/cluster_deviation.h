@@ -47,7 +47,7 @@ class DeviationModel {
         size_(length(n.bounds.upper - n.bounds.lower)),
         spread_(Kind::fromCentre ? size_ : length(n.centres().extent())),
         closest2_(larger(0.25f * size_ * size_, std::numeric_limits<float>::min())),
-        clamp2_(n.clamp2),
+        size2_(n.size2),
         sinHalfAngle_(n.sinHalfAngle),
         normalSpread_(kNormalSpread * (1.0f - n.cosHalfAngle)) {}
 
@@ -65,15 +65,15 @@ class DeviationModel {
     const float x = larger(larger(lower_.x - point.x, point.x - upper_.x), 0.0f);
     const float y = larger(larger(lower_.y - point.y, point.y - upper_.y), 0.0f);
     const float z = larger(larger(lower_.z - point.z, point.z - upper_.z), 0.0f);
-    return {clamp01(deviation) * sent / Kind::boundedDistance2(distance2, clamp2_),
-            sent / minDistance2<Kind>(x * x + y * y + z * z, clamp2_)};
+    return {clamp01(deviation) * sent / Kind::boundedDistance2(distance2, size2_),
+            sent / minDistance2<Kind>(x * x + y * y + z * z, size2_)};
   }
 
  private:
   static float clamp01(float a) { return larger(a < 1.0f ? a : 1.0f, 0.0f); }
   Vec3 lower_, upper_, middle_, axis_, intensity_;
   // Diagonals of the box of what shines, and of the VPLs' centres.
-  float size_, spread_, closest2_, clamp2_, sinHalfAngle_, normalSpread_;
+  float size_, spread_, closest2_, size2_, sinHalfAngle_, normalSpread_;
 };
 
 // Whether the cluster's light is at most `allowed` at all receivers within the bounds, whose BSDFs

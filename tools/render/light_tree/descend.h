@@ -16,16 +16,17 @@ struct Descent {
 // Draws a VPL of a node by one random number in [0, 1). `leftShare(left, right)` is the probability
 // of the left child, or empty if neither child may light the receiver; then nothing is drawn.
 template <typename LeftShare>
-std::optional<Descent> descend(const LightTree& tree, uint32_t node, float u,
+std::optional<Descent> descend(const LightTree& tree, uint32_t node, double u,
                                const LeftShare& leftShare) {
   float probability = 1.0f;
   while (!tree.nodes[node].leaf()) {
     const LightNode& n = tree.nodes[node];
     const std::optional<float> left = leftShare(tree.nodes[n.left], tree.nodes[n.right]);
     if (!left) return {};
-    const bool goLeft = u < *left;
+    const bool goLeft = u < double{*left};
     const float share = goLeft ? *left : 1.0f - *left;
-    u = std::min((goLeft ? u : u - *left) / share, 0x1.fffffep-1f);  // reuses the random number
+    // The number is used again. Its 53 bits leave enough for the last levels.
+    u = std::min((goLeft ? u : u - double{*left}) / double{share}, 0x1.fffffffffffffp-1);
     probability *= share;
     node = goLeft ? n.left : n.right;
   }

@@ -69,12 +69,12 @@ class Builder {
   LightNode leafOf(uint32_t i) const {
     LightNode n;
     n.bounds = vpls_.box(i);
-    n.reach = n.bounds.upper.x - vpls_.position[i].x;
+    n.boxMargin = n.bounds.upper.x - vpls_.position[i].x;
     n.axis = vpls_.normal[i];
     n.frame = AxisFrame(n.axis);
     n.intensity = vpls_.intensity[i];
     n.kind = vpls_.kind;
-    n.clamp2 = vpls_.clamp2[i];
+    n.size2 = vpls_.size2[i];
     n.representative = i;
     return n;
   }
@@ -91,8 +91,8 @@ class Builder {
     n.frame = AxisFrame(n.axis);
     n.intensity = a.intensity + b.intensity;
     n.kind = a.kind;
-    n.clamp2 = std::min(a.clamp2, b.clamp2);
-    n.reach = std::min(a.reach, b.reach);
+    n.size2 = std::min(a.size2, b.size2);
+    n.boxMargin = std::min(a.boxMargin, b.boxMargin);
     const float share = mean(a.intensity) / mean(n.intensity);
     n.representative =
         toUnitFloat(random64(key_, index, 0)) < share ? a.representative : b.representative;

@@ -35,17 +35,20 @@ struct LightNode {
   float cosHalfAngle = 1.0f, sinHalfAngle = 0.0f;  // sine of at most a right angle
   Vec3 intensity;                                  // sum over the cluster, W/sr
   VplKind kind = {};
-  float clamp2 = 0.0f;  // smallest in the cluster, so that bounds hold for all of its VPLs
-  float reach = 0.0f;   // by which `bounds` exceeds the box of its VPLs' centres (VplLights::box)
+  float size2 = 0.0f;  // smallest in the cluster, so that bounds hold for all of its VPLs
+  float boxMargin =
+      0.0f;  // by which `bounds` exceeds the box of its VPLs' centres (VplLights::box)
   uint32_t representative = 0;
   uint32_t left = 0, right = 0;  // both are 0 in a leaf
   uint32_t begin = 0, end = 0;   // range of its VPLs in LightTree::order
   bool leaf() const { return left == 0; }
   // About the box of its VPLs' centres, which tells how much their light varies.
-  Bounds centres() const { return {bounds.lower + Vec3(reach), bounds.upper - Vec3(reach)}; }
+  Bounds centres() const {
+    return {bounds.lower + Vec3(boxMargin), bounds.upper - Vec3(boxMargin)};
+  }
   // Upper bound of its VPLs' falloff, 1/m2.
   float maxFalloff(float distanceSquared) const {
-    return bnvpl::maxFalloff(kind, distanceSquared, clamp2);
+    return bnvpl::maxFalloff(kind, distanceSquared, size2);
   }
 };
 

@@ -63,7 +63,7 @@ void VplSampler::fill(const LightTree& tree, std::span<const uint32_t> nodes, si
     f.ax[lane] = n.axis.x, f.ay[lane] = n.axis.y, f.az[lane] = n.axis.z;
     f.cosHalf[lane] = n.cosHalfAngle, f.sinHalf[lane] = n.sinHalfAngle;
     f.red[lane] = n.intensity.x, f.green[lane] = n.intensity.y, f.blue[lane] = n.intensity.z;
-    f.clamp2[lane] = n.clamp2;
+    f.size2[lane] = n.size2;
     if (n.leaf()) {
       f.child[lane] = kLeaf | n.representative;
       continue;
@@ -134,7 +134,7 @@ VplSampler::Lanes VplSampler::Point::likelyOf(uint32_t node) const {
     value = load(sums);
   }
   const __m128 away2 = larger(d2, all(kClosest) * radius2);
-  return store(value * cosine * emitter / Kind::boundedDistance2(away2, load(f.clamp2)));
+  return store(value * cosine * emitter / Kind::boundedDistance2(away2, load(f.size2)));
 }
 
 std::optional<VplSampler::Draw> VplSampler::Point::draw(float u, Rng& rng) const {

@@ -58,7 +58,7 @@ class VplSampler {
     Lanes ax{}, ay{}, az{};           // axes of the cones of normals
     Lanes cosHalf{}, sinHalf{};       // cosines and sines of their half angles
     Lanes red{}, green{}, blue{};     // intensities, W/sr; 0 in an empty lane
-    Lanes clamp2{1, 1, 1, 1};         // see LightNode
+    Lanes size2{1, 1, 1, 1};          // see LightNode
     std::array<uint32_t, 4> child{};  // index of another Node4, or kLeaf and a VPL
   };
   static constexpr uint32_t kLeaf = 1u << 31;

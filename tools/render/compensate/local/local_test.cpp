@@ -146,7 +146,8 @@ TEST(Local, LeaksThroughAThinWallWithinABlock) {
     const Image image =
         renderVpls(
             world, lit,
-            with(with(kPlainRender, {{"only", "indirect"}, {"control", "none"}, {"clamp", "20"}}),
+            with(with(kPlainRender,
+                      {{"only", "indirect"}, {"control", "none"}, {"clamp", "20"}, {"spp", "1"}}),
                  options))
             .image;
     std::array<double, 20> columns{};

@@ -40,7 +40,9 @@ TEST(NearField, RestoresClampedAndUncoveredLight) {
   for (const VplTable* vpls : {&all, &rest}) {
     const VplTable lit = lightVpls(world, *vpls, kFewPhotons).table;
     const auto indirect = [&](const char* compensate) {
-      return indirectByVpls(world, lit, {{"compensate", compensate}, {"clamp", "4"}, {"spp", "2"}});
+      return indirectByVpls(
+          world, lit,
+          {{"gather", "tilecuts"}, {"compensate", compensate}, {"clamp", "4"}, {"spp", "2"}});
     };
     EXPECT_LT(indirect("none"), 0.98 * path);
     EXPECT_NEAR(indirect("near-field") / path, 1.0, 0.03) << (vpls == &rest ? "with a gap" : "");
@@ -82,7 +84,9 @@ TEST(NearField, LightFromBelowSlatsStaysThere) {
     double ours = 0.0;
     for (const char* seed : {"1", "2", "3", "4"}) {
       const VplTable lit = lightVpls(world, vpls, with(method, {{"seed", seed}})).table;
-      ours += indirectByVpls(world, lit, {{"compensate", "near-field"}, {"spp", "2"}}) / 4.0;
+      ours += indirectByVpls(world, lit,
+                             {{"gather", "tilecuts"}, {"compensate", "near-field"}, {"spp", "2"}}) /
+              4.0;
     }
     EXPECT_NEAR(ours / path, 1.0, 0.025) << method.front().second;
   }
@@ -183,7 +187,7 @@ TEST(NearField, RadianceUsesTheCoveredAreaAndSliversAreUnknown) {
 TEST(NearField, MoreRaysLowerTheNoiseAndKeepTheMean) {
   World world("cornell/scene.toml");
   world.scene.film = {32, 32};
-  const VplTable lit = litVpls(world);
+  const VplTable lit = litVpls(world, {{"count", "300"}});
   const auto render = [&](const char* rays, const char* seed) {
     return renderVpls(world, lit,
                       with(kPlainRender, {{"compensate", "near-field"},

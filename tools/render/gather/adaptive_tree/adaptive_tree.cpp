@@ -57,14 +57,14 @@ class AdaptiveTree {
         continue;
       }
       ++out.cut;
-      const auto drawn = draw(node, at, normal, toUnitFloat(random64(key, node, 0)), out);
+      const auto drawn = draw(node, at, normal, toUnitDouble(random64(key, node, 0)), out);
       if (drawn && drawn->probability > 0.0f) test.add(drawn->vpl, 1.0f / drawn->probability, out);
     }
     return out;
   }
 
  private:
-  std::optional<Descent> draw(uint32_t node, Vec3 at, Vec3 normal, float u, Gathered& out) const {
+  std::optional<Descent> draw(uint32_t node, Vec3 at, Vec3 normal, double u, Gathered& out) const {
     return descend(
         tree_, node, u, [&](const LightNode& left, const LightNode& right) -> std::optional<float> {
           out.counts[1] += 2;
@@ -101,7 +101,7 @@ class AdaptiveTree {
     const double varE =
         std::max(0.0, (squaresUpTo_[n.end] - squaresUpTo_[n.begin]) / count - e * e);
     const Bounds centres = n.centres();
-    const double a = std::sqrt(double{larger(centres.distanceSquared(at), n.clamp2)});
+    const double a = std::sqrt(double{larger(centres.distanceSquared(at), n.size2)});
     const double b = std::max(a, double{length(max(at - centres.lower, centres.upper - at))});
     const double g = 1.0 / (a * b);
     const double varG = (b - a) * (b - a) * g * g * g / 3.0;
@@ -116,7 +116,7 @@ class AdaptiveTree {
       const LightNode& n = tree_.nodes[node];
       const float radius2 = 0.25f * lengthSquared(n.bounds.extent());
       sum += double{mean(n.intensity)} /
-             double{larger(lengthSquared(n.bounds.center() - at), larger(radius2, n.clamp2))};
+             double{larger(lengthSquared(n.bounds.center() - at), larger(radius2, n.size2))};
     }
     return sum;
   }

@@ -59,7 +59,7 @@ void addLight(const VplLights& vpls, std::span<const Part> run, uint64_t key, Le
       means[a + 3] += weight * double{vpls.normal[p.vpl][a]};
       intensity[a] += double{p.weight} * double{vpls.intensity[p.vpl][a]};
     }
-    means[6] += weight * double{vpls.clamp2[p.vpl]};
+    means[6] += weight * double{vpls.size2[p.vpl]};
     upTo.push_back(sum += weight);
   }
   if (!(sum > 0.0)) return;
@@ -69,7 +69,7 @@ void addLight(const VplLights& vpls, std::span<const Part> run, uint64_t key, Le
   level.lights.position.push_back(vec3(&means[0]));
   level.lights.normal.push_back(vec3(&means[3]));
   level.lights.intensity.push_back(vec3(intensity.data()));
-  level.lights.clamp2.push_back(static_cast<float>(means[6]));
+  level.lights.size2.push_back(static_cast<float>(means[6]));
   for (size_t m = 0; m < kMembers; ++m) {
     const double u = double(m) + double{toUnitFloat(random64(key, light, uint32_t(m)))};
     const auto at = std::ranges::upper_bound(upTo, u / double(kMembers) * sum);

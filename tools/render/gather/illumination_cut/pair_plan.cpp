@@ -142,16 +142,21 @@ class PairPlanner {
   }
 
   void refine(Pair start, std::vector<Found>& found) const {
+    constexpr size_t kUncheckedPairs = 1 << 12;
+    size_t checked = 0;
     std::vector<Pair> pairs{start};
     while (!pairs.empty()) {
       const Pair last = pairs.back();
       pairs.pop_back();
       refineOnce(
           last, [&](Pair p) { pairs.push_back(p); }, found);
-      constexpr size_t kCheckedPairs = 1 << 16;
-      if (found.size() % kCheckedPairs == kCheckedPairs - 1)  // there is room for as many again
-        requireMemory(double(sizeof(Found) * found.size()), "pairs of points and clusters",
-                      "raise --error, or render fewer pixels at a time");
+      if (found.size() < checked + kUncheckedPairs) continue;
+      const uint64_t more = found.size() - checked;
+      checked = found.size();
+      // The end copies as many again.
+      const uint64_t all = pairs_.fetch_add(more, std::memory_order_relaxed) + more;
+      requireMemory(double(sizeof(Found) * all), "pairs of points and clusters",
+                    "raise --error, or render fewer pixels at a time");
     }
   }
 
@@ -189,6 +194,7 @@ class PairPlanner {
   PairPlan& plan_;
   std::vector<SurfacePoint> points_;
   mutable std::atomic<uint64_t> rays_ = 0;
+  mutable std::atomic<uint64_t> pairs_ = 0;  // found so far, up to kUncheckedPairs of each part
   std::vector<float> least_;  // for each node of the receivers' tree, channels added, W/(m2 sr)
 };
 

@@ -17,6 +17,10 @@ double differenceOf(const Image& a, const Image& b) {
 
 TEST(Interleaved, HasTheEnergyOfAllVpls) { expectEnergyOfAll("interleaved", 0.02, 2); }
 
+TEST(Interleaved, HasTheEnergyInFurnaceAndOfOneBounce) {
+  expectEnergyInFurnaceAndOfOneBounce("interleaved", 0.02);
+}
+
 TEST(Interleaved, PatternsOfOnePixelAreTheSumOverAll) {
   for (const GatherCase* c : gatherCases()) {
     const Image all = c->indirect("all"), one = c->indirect("interleaved", {{"interleave", "1"}});
@@ -57,6 +61,10 @@ TEST(Interleaved, TheFilterKeepsTheEnergyOfAPlane) {
     EXPECT_NEAR(ours.stats.indirect / all.stats.indirect, 1.0, 0.003) << side;
     EXPECT_EQ(ours.stats.own[0], std::stod(side) * std::stod(side));
     EXPECT_LT(differenceOf(ours.image, all.image), 0.02) << side;
+    // The pattern shifts with each pass, for all tiles alike.
+    const Given passes{{"passes", "2"}, {"pass-spp", "1"}, {"spp", "2"}, {"adaptive", "off"}};
+    const Image byPasses = shown("interleaved", with({{"interleave", side}}, passes)).image;
+    EXPECT_LT(differenceOf(byPasses, shown("all", passes).image), 0.02) << side;
   }
 }
 

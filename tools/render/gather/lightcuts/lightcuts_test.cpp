@@ -26,6 +26,10 @@ double relativeDifference(const Image& a, const Image& b) {
   return difference / sum;
 }
 
+TEST(Lightcuts, HasTheEnergyInFurnaceAndOfOneBounce) {
+  expectEnergyInFurnaceAndOfOneBounce("lightcuts", 0.02);
+}
+
 TEST(Lightcuts, WithoutToleratedErrorIsTheSumOverAll) {
   const Image all = render("all");
   const Image cuts = render("lightcuts", {{"error", "0"}, {"max-cut", "1M"}});

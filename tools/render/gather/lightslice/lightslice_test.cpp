@@ -10,6 +10,10 @@ double sliceError(const GatherCase& c, const Given& options) {
 // VPLs that no slice's representative sees are lost (theory.md).
 TEST(LightSlice, HasTheEnergyOfAllVpls) { expectEnergyOfAll("lightslice", 0.03, 2); }
 
+TEST(LightSlice, HasTheEnergyInFurnaceAndOfOneBounce) {
+  expectEnergyInFurnaceAndOfOneBounce("lightslice", 0.02);
+}
+
 TEST(LightSlice, MoreColumnsAreNearerToAllVpls) {
   const GatherCase& c = *gatherCases().back();
   double before = INFINITY;

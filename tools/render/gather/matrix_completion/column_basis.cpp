@@ -7,7 +7,8 @@ namespace bnvpl::methods::gather::matrix_completion {
 
 namespace {
 
-constexpr double kCutoff = 1e-5;  // relative length below which a vector is in the span of others
+// A vector of length 1 whose part outside the span of others is shorter is taken for one of them.
+constexpr double kCutoff = 1e-5;
 
 double product(std::span<const double> a, std::span<const double> b) {
   return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
@@ -35,10 +36,9 @@ std::vector<double> ColumnBasis::fit(std::span<const uint32_t> rows, std::span<c
   for (size_t k = 0; k < count; ++k) {
     std::vector<double> v, column;
     for (const uint32_t row : rows) v.push_back(vectors_[k][row]);
-    const double before = std::sqrt(product(v, v));
     for (const auto& earlier : q) column.push_back(project(v, earlier));
     const double left = std::sqrt(product(v, v));
-    if (!(left > kCutoff * before)) continue;
+    if (!(left > kCutoff)) continue;
     scale(v, 1.0 / left);
     column.push_back(left);
     q.push_back(std::move(v));

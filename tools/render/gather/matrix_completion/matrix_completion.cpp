@@ -25,6 +25,18 @@ constexpr std::array kCounters{
             "VPLs whose visibility is completed instead of traced"},
     Counter{"fullcolumns", "full columns", "VPLs that every sample of the tile's slice traces"}};
 
+// Equal parts of at most kMaxRows receivers: work and memory grow with the square of their number.
+std::vector<std::span<const uint32_t>> partsOf(std::span<const uint32_t> receivers) {
+  constexpr size_t kMaxRows = 1024;
+  const size_t count = (receivers.size() + kMaxRows - 1) / kMaxRows;
+  std::vector<std::span<const uint32_t>> parts;
+  for (size_t k = 0; k < count; ++k) {
+    const size_t begin = k * receivers.size() / count, end = (k + 1) * receivers.size() / count;
+    parts.push_back(receivers.subspan(begin, end - begin));
+  }
+  return parts;
+}
+
 Gather make(const GatherInputs& in, const Values& options) {
   const auto plan = std::make_shared<const SlicePlan>(makeSlicePlan(in, options));
   const Complete complete =
@@ -37,11 +49,14 @@ Gather make(const GatherInputs& in, const Values& options) {
                 std::map<size_t, std::vector<uint32_t>> slices;
                 for (uint32_t i = 0; i < out.size(); ++i)
                   if (tile.bsdf[i]) slices[plan->sliceOf(tile.bsdf[i]->point())].push_back(i);
-                for (auto& [slice, receivers] : slices) {
-                  SliceMatrix matrix(in, tile, std::move(receivers), out);
-                  const auto draws =
-                      matrix.byBrightness(plan->draws[slice].of(tile, tile.firstSample));
-                  complete(matrix, draws, share, random64(tile.key, slice, 0));
+                for (const auto& [slice, receivers] : slices) {
+                  const std::span<const VplDraw> turn =
+                      plan->draws[slice].of(tile, tile.firstSample);
+                  for (const std::span<const uint32_t> part : partsOf(receivers)) {
+                    SliceMatrix matrix(in, tile, {part.begin(), part.end()}, out);
+                    complete(matrix, matrix.byBrightness(turn), share,
+                             random64(tile.key, slice, part.front()));
+                  }
                 }
               },
           .wholePixels = true,

@@ -83,7 +83,7 @@ Cluster splitOff(Cluster& cluster, const Columns& columns, Rng& rng) {
 
 // Clusters of the VPLs that some row sees, and one of all others, whose VPLs are drawn by their
 // flux: without it the mean of many images would lack their light.
-std::vector<Cluster> clustersOf(const Columns& columns, size_t count, Rng& rng) {
+std::vector<Cluster> clustersOf(const Columns& columns, size_t count, Rng& rng, size_t& splits) {
   Cluster seen, unseen;
   for (uint32_t i = 0; i < columns.size(); ++i)
     (columns.norm(i) > 0.0 ? seen : unseen).push_back(i);
@@ -93,12 +93,14 @@ std::vector<Cluster> clustersOf(const Columns& columns, size_t count, Rng& rng) 
     clusters = clustersBySampling(seen, columns, bySampling, rng);
   }
   if (!unseen.empty()) clusters.push_back(std::move(unseen));
-  return refinedClusters(std::move(clusters), count, columns, true,
-                         [&](Cluster& c) { return splitOff(c, columns, rng); });
+  return refinedClusters(std::move(clusters), count, columns, true, [&](Cluster& c) {
+    ++splits;
+    return splitOff(c, columns, rng);
+  });
 }
 
 struct Plan {
-  size_t rows = 0;
+  size_t rows = 0, splits = 0;
   ClusterDraws draws;
 };
 
@@ -114,19 +116,21 @@ Plan planOf(const GatherInputs& in, const Values& options) {
     const double flux = double{mean(in.vpls.intensity[i])};
     shares[i] = columns.norm(i) > 0.0 ? columns.norm(i) : flux;
   }
-  for (const Cluster& c : clustersOf(columns, options[kColumnsOption], rng))
+  for (const Cluster& c : clustersOf(columns, options[kColumnsOption], rng, plan.splits))
     plan.draws.add(c, shares, rng);
   return plan;
 }
 
 Gather make(const GatherInputs& in, const Values& options) {
   const auto plan = std::make_shared<const Plan>(planOf(in, options));
+  std::vector<PlanCount> planned = entriesOf(plan->rows, in.vpls.size());
+  planned.push_back({"split_clusters", "clusters found by splitting", double(plan->splits)});
   return {.tile =
               [in, plan](const TileReceivers& tile, std::span<Gathered> out) {
                 for (size_t i = 0; i < out.size(); ++i)
                   out[i] = tile.bsdf[i] ? plan->draws.gather(in, tile, i) : Gathered{};
               },
-          .planned = entriesOf(plan->rows, in.vpls.size())};
+          .planned = std::move(planned)};
 }
 
 }  // namespace

@@ -7,13 +7,17 @@ TEST(Mrcs, HasTheMeanOfAllVpls) {
   expectMeanOfAll("mrcs", 0.02, {{"rows", "100"}, {"columns", "200"}});
 }
 
+TEST(Mrcs, HasTheEnergyInFurnaceAndOfOneBounce) {
+  expectEnergyInFurnaceAndOfOneBounce("mrcs", 0.02);
+}
+
 // VPLs that no row sees must not be lost: with two rows most are.
 TEST(Mrcs, HasTheEnergyOfAllVplsWithHardlyAnyRows) {
   const GatherCase& c = *gatherCases().front();
   double sum = 0.0, all = 0.0;
   for (uint64_t seed = 1; seed <= 12; ++seed) {
     sum += meanOf(c.indirect("mrcs", {{"rows", "2"}, {"columns", "300"}}, seed));
-    all += meanOf(c.indirect("all", {}, seed));
+    all += meanOf(c.ofAll({{"light", "point"}}, seed));
   }
   EXPECT_NEAR(sum / all, 1.0, 0.05);
 }

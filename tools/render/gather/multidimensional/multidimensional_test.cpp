@@ -53,7 +53,7 @@ TEST(Multidimensional, CostGrowsSlowerThanTheNumberOfSamples) {
   const double one = pairsOfPixel(c, "multidimensional", "1"),
                many = pairsOfPixel(c, "multidimensional", "32");
   EXPECT_LT(many, 4.0 * one);
-  EXPECT_NEAR(pairsOfPixel(c, "lightcuts", "32") / pairsOfPixel(c, "lightcuts", "1"), 32.0, 2.0);
+  EXPECT_NEAR(pairsOfPixel(c, "lightcuts", "8") / pairsOfPixel(c, "lightcuts", "1"), 8.0, 0.5);
 }
 
 TEST(Multidimensional, RefusesWhatNeedsSingleSamples) {

@@ -25,7 +25,7 @@ class Builder {
   uint32_t add() {
     VplLights& l = tree_.lights;
     l.position.emplace_back(), l.normal.emplace_back(), l.intensity.emplace_back();
-    l.clamp2.emplace_back();
+    l.size2.emplace_back();
     tree_.nodes.emplace_back();
     return static_cast<uint32_t>(tree_.nodes.size() - 1);
   }
@@ -76,13 +76,13 @@ class Builder {
         sums[a + 3] += weight * double{vpls_.normal[i][a]};
         sums[a + 6] += double{vpls_.intensity[i][a]};
       }
-      sums[9] += weight * std::sqrt(double{vpls_.clamp2[i]});
+      sums[9] += weight * std::sqrt(double{vpls_.size2[i]});
       weights += weight;
       n.cone = n.bounds.empty() ? NormalCone{vpls_.normal[i]}
                                 : merged(n.cone, NormalCone{vpls_.normal[i]});
       n.bounds.extend(vpls_.box(i));
-      n.minClamp2 = std::min(n.minClamp2, vpls_.clamp2[i]);
-      n.maxClamp2 = std::max(n.maxClamp2, vpls_.clamp2[i]);
+      n.minSize2 = std::min(n.minSize2, vpls_.size2[i]);
+      n.maxSize2 = std::max(n.maxSize2, vpls_.size2[i]);
       // Replaces the VPL so far with the probability of the new one's share.
       const double u = double{toUnitFloat(random64(key_, node, i))};
       if (u * weights < weight) n.shadow = i;
@@ -91,7 +91,7 @@ class Builder {
     VplLights& l = tree_.lights;
     if (vpls.size() == 1) {  // exactly the VPL
       l.position[node] = vpls_.position[vpls[0]], l.normal[node] = vpls_.normal[vpls[0]];
-      l.intensity[node] = vpls_.intensity[vpls[0]], l.clamp2[node] = vpls_.clamp2[vpls[0]];
+      l.intensity[node] = vpls_.intensity[vpls[0]], l.size2[node] = vpls_.size2[vpls[0]];
       return;
     }
     const auto vec3 = [&](size_t at, double scale) {
@@ -100,7 +100,7 @@ class Builder {
     };
     l.position[node] = vec3(0, 1.0 / weights), l.normal[node] = vec3(3, 1.0 / weights);
     l.intensity[node] = vec3(6, 1.0),
-    l.clamp2[node] = static_cast<float>(std::pow(sums[9] / weights, 2.0));
+    l.size2[node] = static_cast<float>(std::pow(sums[9] / weights, 2.0));
   }
 
   const VplLights& vpls_;

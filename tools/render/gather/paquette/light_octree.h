@@ -15,7 +15,7 @@ namespace bnvpl::methods::gather::paquette {
 struct OctreeNode {
   Bounds bounds;
   NormalCone cone;
-  float minClamp2 = INFINITY, maxClamp2 = 0.0f;  // extremes over its VPLs
+  float minSize2 = INFINITY, maxSize2 = 0.0f;    // extremes over its VPLs
   uint32_t shadow = 0;                           // VPL that is tested for all
   uint32_t firstChild = 0, children = 0;
   bool leaf() const { return children == 0; }  // a single VPL

@@ -72,9 +72,9 @@ float spread(const OctreeNode& n, VplKind kind, Vec3 intensity, const Bsdf& bsdf
   // Nothing arrives from behind the surface, which shading normals do not tell.
   const bool inFront = sphere.cosines(bsdf.point().ng).low > 0.0f;
   const Vec3 low = inFront ? bsdf.diffuseValue() * std::max(receiver.low, 0.0f) : Vec3{};
-  const float nearest = maxFalloff(kind, n.bounds.distanceSquared(at), n.minClamp2);
+  const float nearest = maxFalloff(kind, n.bounds.distanceSquared(at), n.minSize2);
   const float farthest =
-      falloff(kind, lengthSquared(max(at - n.bounds.lower, n.bounds.upper - at)), n.maxClamp2);
+      falloff(kind, lengthSquared(max(at - n.bounds.lower, n.bounds.upper - at)), n.maxSize2);
   return std::max(0.0f, dot(intensity, high * (most * nearest) - low * (least * farthest)));
 }
 
@@ -107,7 +107,7 @@ class Octree {
     for (const uint32_t root : tree_.roots) insert(root);
     while (!heap.empty()) {
       const Open worst = heap.front();
-      if (worst.spread <= 0.0f || double{worst.spread} < error_ * total.sum()) break;
+      if (worst.spread <= 0.0f || double{worst.spread} <= error_ * total.sum()) break;
       std::ranges::pop_heap(heap, lessSpread);
       heap.pop_back();
       account(worst, -1.0);

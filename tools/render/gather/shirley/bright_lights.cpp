@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/memory.h"
+
 namespace bnvpl::methods::gather::shirley {
 
 BrightLights::BrightLights(const VplLights& vpls, const Bounds& scene, uint32_t cells,
@@ -18,8 +20,20 @@ const BrightLights::Cell& BrightLights::at(Vec3 position) const {
   auto found = cells_.find(index);
   if (found == cells_.end()) found = cells_.emplace(index, std::make_unique<LazyCell>()).first;
   LazyCell& lazy = *found->second;
-  std::call_once(lazy.once, [&] { lazy.cell = find(grid_.bounds(index)); });
+  std::call_once(lazy.once, [&] {
+    lazy.cell = find(grid_.bounds(index));
+    requireRoomFor(lazy.cell.bright.size());
+  });
   return lazy.cell;
+}
+
+// The lists of all cells may exceed the memory; their number is known only at the end.
+void BrightLights::requireRoomFor(size_t more) const {
+  constexpr uint64_t kUnchecked = 1 << 20;  // entries
+  constexpr double kRoom = 16.0 * kUnchecked * (sizeof(uint32_t) + sizeof(double));
+  const uint64_t before = entries_.fetch_add(more, std::memory_order_relaxed);
+  if (before / kUnchecked == (before + more) / kUnchecked) return;
+  requireMemory(kRoom, "lists of bright VPLs", "raise --threshold, or lower --cells");
 }
 
 BrightLights::Cell BrightLights::find(const Bounds& box) const {
@@ -41,8 +55,8 @@ BrightLights::Cell BrightLights::find(const Bounds& box) const {
         intensity * withKind(vpls_.kind, [&](auto k) { return k.maxEmitted(cosine, 1.0f, 0.0f); });
     const Bounds grown{box.lower - half, box.upper + half};
     most[i] =
-        emitted * maxFalloff(vpls_.kind, grown.distanceSquared(vpls_.position[i]), vpls_.clamp2[i]);
-    arriving += double{emitted * falloff(vpls_.kind, larger(d2, radius * radius), vpls_.clamp2[i])};
+        emitted * maxFalloff(vpls_.kind, grown.distanceSquared(vpls_.position[i]), vpls_.size2[i]);
+    arriving += double{emitted * falloff(vpls_.kind, larger(d2, radius * radius), vpls_.size2[i])};
   }
   Cell cell;
   cell.upTo.assign(1, 0.0);

@@ -41,11 +41,13 @@ class BrightLights {
     Cell cell;
   };
   Cell find(const Bounds& box) const;
+  void requireRoomFor(size_t more) const;
 
   const VplLights& vpls_;
   CellGrid grid_;
   float threshold_;
   std::vector<double> upTo_;  // running sums of all mean intensities; one entry more
+  mutable std::atomic<uint64_t> entries_ = 0;  // bright VPLs of all cells
   mutable tbb::concurrent_unordered_map<size_t, std::unique_ptr<LazyCell>> cells_;
 };
 

@@ -69,7 +69,7 @@ Gathered gatherPoint(const Accelerator& accel, const VplLights& vpls, const Ligh
   const ShadowTest test(accel, vpls, bsdf, groups);
   const std::vector<Cluster>& cut = chooseCut(tree, receiver, cutSize);
   for (const Cluster& cluster : cut) {
-    const float u = toUnitFloat(random64(key, cluster.node, 0));
+    const double u = toUnitDouble(random64(key, cluster.node, 0));
     const auto draw =
         descend(tree, cluster.node, u, [&](const LightNode& left, const LightNode& right) {
           return leftShare(left, right, receiver);

@@ -17,12 +17,12 @@ template <typename Kind>
 uint32_t geometryOfPacket(const VplLights& vpls, uint32_t i, const ReceiverPacket& p,
                           ReceiverPacket::Lanes& transfer, ReceiverPacket::Lanes& clampLoss) {
   const Vec3 at = vpls.position[i], normal = vpls.normal[i];
-  const float clamp2 = vpls.clamp2[i];
+  const float size2 = vpls.size2[i];
   alignas(64) std::array<int, ReceiverPacket::kSize> contributes;
   for (uint32_t l = 0; l < ReceiverPacket::kSize; ++l) {
     const GeometryTerm c =
-        geometryTerm<Kind>(at, normal, clamp2, {p.x[l], p.y[l], p.z[l]},
-                           {p.sx[l], p.sy[l], p.sz[l]}, {p.gx[l], p.gy[l], p.gz[l]});
+        geometryTerm<Kind>(at, normal, size2, {p.x[l], p.y[l], p.z[l]}, {p.sx[l], p.sy[l], p.sz[l]},
+                           {p.gx[l], p.gy[l], p.gz[l]});
     contributes[l] = c.contributes, transfer[l] = c.value, clampLoss[l] = c.clampLoss;
   }
   uint32_t lanes = 0;

@@ -30,7 +30,7 @@ constexpr float kRouletteShare = 0.5f;
 struct ReceiverLanes {
   alignas(32) std::array<float, kSampleReceivers> x{}, y{}, z{}, nx{}, ny{}, nz{}, red{}, green{},
       blue{};
-  alignas(32) std::array<float, kSampleReceivers> perLight{};  // 1 over the light at it, or 0
+  alignas(32) std::array<float, kSampleReceivers> invLight{};  // 1 over the light at it, or 0
 
   ReceiverLanes(const SampleReceivers& sample, const std::array<float, kSampleReceivers>& light) {
     for (size_t k = 0; k < kSampleReceivers; ++k) {
@@ -39,7 +39,7 @@ struct ReceiverLanes {
       x[k] = p.x, y[k] = p.y, z[k] = p.z;
       nx[k] = n.x, ny[k] = n.y, nz[k] = n.z;
       red[k] = r.x, green[k] = r.y, blue[k] = r.z;
-      perLight[k] = light[k] > 0.0f ? 1.0f / light[k] : 0.0f;
+      invLight[k] = light[k] > 0.0f ? 1.0f / light[k] : 0.0f;
     }
   }
 
@@ -58,7 +58,7 @@ struct ReceiverLanes {
       const float d =
           expected.at({x[k], y[k], z[k]}, {nx[k], ny[k], nz[k]}, {red[k], green[k], blue[k]})
               .deviation *
-          perLight[k];
+          invLight[k];
       squares[k] = d * d;
     }
     return std::accumulate(squares.begin(), squares.end(), 0.0f);

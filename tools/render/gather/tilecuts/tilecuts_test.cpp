@@ -41,6 +41,10 @@ double lightAt(const Image& a, size_t i) {
   return double{(*a.find("R"))[i]} + double{(*a.find("G"))[i]} + double{(*a.find("B"))[i]};
 }
 
+TEST(TileCuts, HasTheEnergyInFurnaceAndOfOneBounce) {
+  expectEnergyInFurnaceAndOfOneBounce("tilecuts", 0.02);
+}
+
 TEST(TileCuts, WithoutToleratedErrorIsTheSumOverAll) {
   for (const GatherCase* c : {&cornell(), &door()}) {
     const Image all = c->indirect("all");
@@ -60,8 +64,8 @@ TEST(TileCuts, WithoutToleratedErrorIsTheSumOverAll) {
 // held in memory together.
 TEST(TileCuts, IsUnbiased) {
   const Given vpls{{"count", "400"}};  // a cut has 32 clusters of them
-  const GatherCase box("cornell/scene.toml", {25, 19}, vpls),
-      slit("veach-door/scene.toml", {32, 18}, vpls);
+  const GatherCase box("cornell/scene.toml", {25, 19}, vpls, {{"emit-points", "1"}}),
+      slit("veach-door/scene.toml", {32, 18}, vpls, {{"emit-points", "1"}});
   for (const GatherCase* c : {&box, &slit}) {
     const Given spp{{"spp", "17"}};
     std::array<Image, 4> all, cuts;  // images of one seed see the same points

@@ -6,6 +6,10 @@ namespace {
 // Untested VPLs count with an expected visibility, which is right on average up to its own error.
 TEST(Ward, HasTheEnergyOfAllVpls) { expectEnergyOfAll("ward", 0.02, 1); }
 
+TEST(Ward, HasTheEnergyInFurnaceAndOfOneBounce) {
+  expectEnergyInFurnaceAndOfOneBounce("ward", 0.02);
+}
+
 TEST(Ward, WithoutToleranceEveryVplIsTested) {
   const GatherCase& c = *gatherCases().front();
   const Image all = c.indirect("all", {}, 1), ward = c.indirect("ward", {{"tolerance", "0"}}, 1);

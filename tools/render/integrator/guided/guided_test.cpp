@@ -105,14 +105,14 @@ TEST(Guided, EndsByPasses) {
 TEST(Guided, ClosedRoomsStayDark) {
   const World world("test/two-rooms.toml");
   const VplTable lit = fewLit(world);
-  const FilmStats stats = renderVpls(world, lit, {{"integrator", "guided"}, {"spp", "64"}}).stats;
+  const FilmStats stats = renderVpls(world, lit, {{"integrator", "guided"}, {"spp", "16"}}).stats;
   EXPECT_EQ(stats.direct + stats.indirect, 0.0);
 }
 
 // The area light, a sky through the open front, a sun and a point light, with a mirror and gloss.
 TEST(Guided, HasThePathTracersImage) {
   Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "cornell/scene.toml");
-  scene.film = {18, 18};
+  scene.film = {12, 12};
   scene.lights.assign(3, LightSpec{});
   LightSpec &sky = scene.lights[0], &sun = scene.lights[1], &bulb = scene.lights[2];
   sky.type = LightType::Environment;
@@ -222,7 +222,7 @@ TEST(Guided, SharedPathsHaveThePathTracersImage) {
   const std::array<std::array<MaterialModel, 2>, 2> walls{{{gltf, coated}, {gloss, metal}}};
   for (const auto& models : walls) {
     Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "cornell/scene.toml");
-    scene.film = {16, 16};
+    scene.film = {12, 12};
     for (Material& m : scene.materials) {
       if (m.name == "Green") m.model = models[0];
       if (m.name == "Red") m.model = models[1];
@@ -259,7 +259,7 @@ TEST(Guided, HasThePathTracersImageOverNormalMaps) {
 
 // The VPLs have a wrong flux, and the guide takes nearly all directions.
 TEST(Guided, HasThePathTracersImageByWrongVpls) {
-  const World world = cornell(18);
+  const World world = cornell(12);
   VplTable lit = fewLit(world);
   for (size_t i = 0; i < lit.size(); ++i) lit.flux[i] = i % 5 == 0 ? Vec3{100.0f} : Vec3{};
   const Given bounces{{"max-bounces", "3"}};

@@ -37,6 +37,6 @@ const IntegratorMethod method{
     kOptions,
     make,
     /*needsVpls=*/false,
-    /*photons=*/true};
+    /*tracesPhotons=*/true};
 
 }  // namespace bnvpl::methods::integrator::light

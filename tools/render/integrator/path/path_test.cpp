@@ -77,7 +77,7 @@ TEST(PathTracer, DirectLightAgreesWithTheVplRenderers) {
     world.scene.film = {32, 32};
     const Given film{{"spp", "512"}, {"only", "direct"}};
     const FilmStats path = renderWithout(world, "path", film).stats;
-    const Given plain = with(kPlainDirect, film);
+    const Given plain = with(with(kPlainDirect, film), {{"spp", "128"}});
     const FilmStats light = renderVpls(world, {}, plain).stats;
     EXPECT_NEAR(light.direct / path.direct, 1.0, 0.01) << daylight;
     const Given nearField = with(plain, {{"compensate", "near-field"}, {"near-field-rays", "4"}});

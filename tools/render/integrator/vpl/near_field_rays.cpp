@@ -34,7 +34,8 @@ void NearFieldRays::send(const RayOrigin& from, unsigned count, uint32_t first, 
   sendRays(
       accel_, from, misRays_, count, first, key, out,
       [&](std::span<const SurfacePoint> hits) {
-        if (compensation_ && only_ != Only::Direct) compensation_.lookUp(hits, coverLookup);
+        if (compensation_.byRays() && only_ != Only::Direct)
+          compensation_.lookUp(hits, coverLookup);
       },
       [&](size_t k, const FirstSegment& segment) {
         follow(segment, coverLookup[k], from.reuse, groups, out);
@@ -175,7 +176,7 @@ void NearFieldRays::begin(Path& path, const ReachGrid::Lookup& coverLookup) cons
 // looked up yet.
 Uncovered NearFieldRays::uncoveredAt(const SurfacePoint& hit, bool straight,
                                      const ReachGrid::Lookup* coverLookup, Rng& rng) const {
-  if (!compensation_) return {straight ? 0.0f : 1.0f, {}};
+  if (!compensation_.byRays()) return {straight ? 0.0f : 1.0f, {}};
   Uncovered out = compensation_.uncovered(hit, hit.distance, coverLookup, rng);
   // VPLs carry no light over specular vertices, but their radiance is right there, too.
   if (!straight) out.share = 1.0f, out.byDistance = {};

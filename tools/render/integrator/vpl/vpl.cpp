@@ -131,7 +131,8 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
     compensation = compensate->make({in.lit, in.accel, clamp, light, in.litGroups}, options);
   TileParts tile;
   // With --only direct, direct samples trace BSDF rays of their own.
-  if (options.has(kNearFieldRaysOption) && (compensation || hasSpecularLobes(in.accel.scene())))
+  if (options.has(kNearFieldRaysOption) &&
+      (compensation.byRays() || hasSpecularLobes(in.accel.scene())))
     tile.raysEach = static_cast<unsigned>(options[kNearFieldRaysOption]);
   if (indirect && (tile.raysEach > 0 || compensation.tile)) {
     parts->spatialLights = std::make_unique<const SpatialLightSampler>(
@@ -182,7 +183,7 @@ const IntegratorMethod method{"vpl",
                               kOptions,
                               make,
                               /*needsVpls=*/true,
-                              /*photons=*/false,
-                              /*gathers=*/true};
+                              /*tracesPhotons=*/false,
+                              /*gathersVpls=*/true};
 
 }  // namespace bnvpl::methods::integrator::vpl

@@ -8,7 +8,8 @@ namespace bnvpl::test {
 namespace {
 
 TEST(Clamp, WhatItRemovesIsReportedAndGivesTheUnclampedImage) {
-  const World world("furnace/scene.toml");
+  World world("furnace/scene.toml");
+  world.scene.film = {24, 24};
   const VplTable lit = litVpls(world, {{"count", "300"}});
   const auto clampedAt = [&](const char* clamp) {
     return renderVpls(world, lit, with(kPlainRender, {{"clamp", clamp}})).stats;

@@ -61,11 +61,11 @@ void Caustics::learnEmission(uint64_t key, const ProgressFn& progress) {
                  });
     return contribution;
   };
-  // What a photon has to learn does not depend on the number of pixels.
   uint64_t count = (photons_ + kPhotonsPerLearningPhoton - 1) / kPhotonsPerLearningPhoton;
+  const uint64_t most = std::min(photons_ / kPhotonsPerFurtherPhoton, kMaxLearningPhotons);
   LearnedEmission learned = bnvpl::learnEmission(lights_, count, key, estimate, progress);
-  for (; !learned.enough && count < kMaxLearningPhotons; key = mix64(key)) {
-    count = std::min(4 * count, kMaxLearningPhotons);
+  for (; !learned.enough && count < most; key = mix64(key)) {
+    count = std::min(4 * count, most);
     learned = bnvpl::learnEmission(lights_, count, key, estimate, progress);
   }
   useful_ = learned.useful;
@@ -161,7 +161,7 @@ uint64_t Caustics::follow(uint64_t key, uint64_t index, uint64_t count, Splats& 
 
 float Caustics::shadowRayRatio(const Bsdf& vertex, const Photon& photon) const {
   const SurfacePoint& point = vertex.point();
-  const LightPlace place{photon.emission.light, {photon.emission.at[0], photon.emission.at[1]}};
+  const LightPoint place{photon.emission.light, {photon.emission.at[0], photon.emission.at[1]}};
   LightSample sample;
   if (!lights_.sampleDirect(place.light, point.position, place.at.x, place.at.y, sample))
     return 0.0f;
@@ -193,7 +193,7 @@ void Caustics::trace(const Photon& photon, Rng& rng, Splats& out) const {
   Vec3 flux = photon.flux;
   Ray next{photon.start.origin, photon.start.direction};
   SurfacePoint hit;
-  bool hidden = false;  // whether paths from the camera cannot find this light
+  bool onlyPhotons = false;  // whether paths from the camera cannot find this light
   RaysOfWay rays;
   for (unsigned specularBounces = 0; specularBounces <= kMaxSpecular && isFinite(flux);
        ++specularBounces) {
@@ -202,7 +202,7 @@ void Caustics::trace(const Photon& photon, Rng& rng, Splats& out) const {
     const Bsdf bsdf(accel_.scene(), hit);
     if (specularBounces > 0 && bsdf.hasRough()) {
       connect(bsdf.point(), flux * bsdf.photonShadingFactor(), photon, rays, out);
-      if (hidden && bounces_ > 0) followBounces(bsdf, flux, photon, rng, out);
+      if (onlyPhotons && bounces_ > 0) followBounces(bsdf, flux, photon, rng, out);
     }
     if (!(bsdf.specularProbability() > 0.0f)) return;
     BsdfSample sample;
@@ -212,7 +212,7 @@ void Caustics::trace(const Photon& photon, Rng& rng, Splats& out) const {
     flux *= sample.weight;
     addVertex(bsdf, sample.wi, specularBounces == 0 && sample.pdf > 0.0f, photon, rays);
     if (specularBounces == 0) {
-      hidden = !photon.hittable && sample.pdf == 0.0f;  // by a perfect lobe
+      onlyPhotons = !photon.hittable && sample.pdf == 0.0f;  // by a perfect lobe
       continue;
     }
     const float survive = std::min(1.0f, maxComponent(sample.weight));
@@ -249,9 +249,9 @@ void Caustics::connect(const SurfacePoint& vertex, Vec3 flux, const Photon& phot
   if (!film) return;
   PhotonMis mis = sharedBy(film->perArea);
   mis.rays *= rays.probability();
-  const float share = 1.0f - mis.rayWeight(photon.emission.light, -photon.start.direction,
-                                           photon.guided, rays.shadowRays);
-  const Vec3 radiance = flux * film->value * (film->perArea * share);
+  const float photonWeight = 1.0f - mis.rayWeight(photon.emission.light, -photon.start.direction,
+                                                  photon.guided, rays.shadowRays);
+  const Vec3 radiance = flux * film->value * (film->perArea * photonWeight);
   if (!isFinite(radiance)) return;
   forPixelsAt(accel_.scene().film, filter, film->at, [&](uint32_t pixel, float value) {
     out.list.push_back({pixel, radiance * value, lights_.group(photon.emission.light)});

@@ -57,7 +57,8 @@ class Caustics {
   static constexpr double kMinPilotPhotons = 4.0;
   static constexpr uint64_t kPhotonsPerPilotPhoton = 8;
   static constexpr uint64_t kPhotonsPerLearningPhoton = 16;
-  static constexpr uint64_t kMaxLearningPhotons = 1 << 18;  // if few have reached the film
+  // Limits if few have reached the film.
+  static constexpr uint64_t kPhotonsPerFurtherPhoton = 8, kMaxLearningPhotons = 1 << 18;
 
   void learnEmission(uint64_t key, const ProgressFn& progress);
   void chooseEmitters(uint64_t key, const ProgressFn& progress);

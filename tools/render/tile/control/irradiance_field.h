@@ -18,7 +18,8 @@ class IrradianceField {
   explicit IrradianceField(const VplTable& lit, const VplGroups& groups = {});
 
   // Irradiance by indirect light, over pi: the radiance that a white diffuse surface would reflect
-  // there, W/(m2 sr). 0 where no VPL covers the point.
+  // there, W/(m2 sr). 0 where no VPL lies within three of its radii on
+  // a surface that faces alike.
   Vec3 indirectAt(Vec3 position, Vec3 normal) const {
     const uint32_t region = regions_.at(position, normal);
     return region == UINT32_MAX ? Vec3{} : indirect_[region];

@@ -8,12 +8,12 @@
 namespace bnvpl {
 
 // Photons [first_[l], first_[l + 1]) belong to light l.
-class PhotonShares {
+class PhotonsPerLight {
  public:
   // Numbers are proportional to power, rounded by the largest-remainder method. A light with power
   // whose share is less than one photon gets one, so the total may exceed `photons` by one for each
   // such light.
-  PhotonShares(const LightSet& lights, uint64_t photons);
+  PhotonsPerLight(const LightSet& lights, uint64_t photons);
 
   uint64_t total() const { return first_.back(); }
   size_t lightOf(uint64_t photon) const;

@@ -1,4 +1,4 @@
-#include "tools/estimate/photon_shares.h"
+#include "tools/estimate/photons_per_light.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 namespace bnvpl {
 
-PhotonShares::PhotonShares(const LightSet& lights, uint64_t photons) {
+PhotonsPerLight::PhotonsPerLight(const LightSet& lights, uint64_t photons) {
   double total = 0.0;
   for (size_t l = 0; l < lights.size(); ++l) total += double{mean(lights.power(l))};
   std::vector<uint64_t> count(lights.size(), 0);
@@ -35,7 +35,7 @@ PhotonShares::PhotonShares(const LightSet& lights, uint64_t photons) {
   for (const uint64_t c : count) first_.push_back(first_.back() + c);
 }
 
-size_t PhotonShares::lightOf(uint64_t photon) const {
+size_t PhotonsPerLight::lightOf(uint64_t photon) const {
   return static_cast<size_t>(std::upper_bound(first_.begin(), first_.end(), photon) -
                              first_.begin()) -
          1;
