@@ -26,7 +26,8 @@ class ViewerTest(PageCase):
         self.assertEqual([self.colour(1.5, 2.5), self.colour(6.5, 2.5)], [a, reference])
         stage = self.one(".stage")
         width = stage.size["width"]
-        drag = ActionChains(self.driver, duration=0).move_to_element(self.one(".handle")).click_and_hold()
+        drag = ActionChains(self.driver, duration=0)
+        drag.move_to_element(self.one(".handle")).click_and_hold()
         drag.move_to_element_with_offset(stage, int(0.375 * width), 0).release().perform()
         self.assertEqual([self.colour(6.5, 2.5), self.colour(7.5, 2.5)], [a, reference])
         ActionChains(self.driver, duration=0).move_to_element_with_offset(

@@ -4,9 +4,10 @@
     tests/inspect/round_trip.py build/release/bin SCENE...   # --size 48x32 --seeds 12 detect more
 
 Path traces both scenes through each camera with the seeds 1 to n, or to 2 if the images of a seed
-are the same up to rounding. The differences at a pixel, one for each seed, are samples of a distribution whose mean is 0 where both agree; Student's t tests
-that. So are those of blocks of 2 x 2, 4 x 4, ... pixels up to the whole image, whose mean must also
-lie within three standard errors. Scenes that cannot be read are named and skipped.
+are the same up to rounding. The differences at a pixel, one for each seed, are samples of a
+distribution whose mean is 0 where both agree; Student's t tests that. So are those of blocks of 2
+x 2, 4 x 4, ... pixels up to the whole image, whose mean must also lie within three standard
+errors. Scenes that cannot be read are named and skipped.
 """
 
 import argparse

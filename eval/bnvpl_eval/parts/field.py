@@ -157,7 +157,8 @@ class Field:
         pipeline.lit(runner, view, c, 1)
 
         def cpu_s(spp: int) -> float:
-            with runner.limited("vpl-render", 2.0 * spp * time_s):  # no half a sample fits into the time
+            limit_s = 2.0 * spp * time_s  # beyond it, not half a sample fits into the time
+            with runner.limited("vpl-render", limit_s):
                 _, runs = pipeline.image(runner, view, c.but(spp=spp), 1)
             return float(runs[-1].cpu_s)
 
