@@ -157,7 +157,7 @@ class Field:
         pipeline.lit(runner, view, c, 1)
 
         def cpu_s(spp: int) -> float:
-            limit_s = 2.0 * spp * time_s  # beyond it, not half a sample fits into the time
+            limit_s = TOO_LONG * spp * time_s  # beyond it, one sample takes too long
             with runner.limited("vpl-render", limit_s):
                 _, runs = pipeline.image(runner, view, c.but(spp=spp), 1)
             return float(runs[-1].cpu_s)
