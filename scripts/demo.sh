@@ -11,5 +11,5 @@ cmake --build --preset release --target vpl-place vpl-eliminate vpl-estimate vpl
 
 echo "Rendering scenes/u-shape"
 make --no-print-directory -f pipelines/Makefile SCENE=scenes/u-shape/scene.toml OUT=out/u-shape \
-  BIN=build/release/bin CANDIDATES=120k VPLS=3k PHOTONS=10M SPP=8 RENDER_FLAGS='--exposure 5' "$@"
+  BIN=build/release/bin CANDIDATES=120k VPLS=3k PHOTONS=10M SPP=8 RENDER_FLAGS='--exposure 4.2' "$@"
 echo "The picture: $PWD/out/u-shape/image.png"
