@@ -107,10 +107,14 @@ class PageCase(unittest.TestCase):
     def one(self, selector: str) -> Any:
         return self.viewer.find_element("css selector", selector)
 
+    def actions(self) -> ActionChains:
+        """A chain of actions whose pointer moves at once."""
+        return ActionChains(self.driver, duration=0)
+
     def keys(self, *keys: str, at: str = ".stage") -> None:
         target = self.one(at)
         self.js("arguments[0].focus({preventScroll: true})", target)
-        chain = ActionChains(self.driver, duration=0)
+        chain = self.actions()
         for key in keys:
             if len(key) > 1 and key.startswith("^"):
                 chain.key_down(Keys.SHIFT).send_keys(key[1:]).key_up(Keys.SHIFT)

@@ -8,7 +8,6 @@ import unittest
 from pathlib import Path
 from typing import Any
 
-from selenium.webdriver import ActionChains
 from selenium.webdriver.common.keys import Keys
 
 import make_report
@@ -27,7 +26,7 @@ class ExplorerTest(PageCase):
     def click(self, x: float, y: float) -> None:
         """Clicks a place, given as shares of width and height."""
         size = self.picture.size
-        ActionChains(self.driver, duration=0).move_to_element_with_offset(
+        self.actions().move_to_element_with_offset(
             self.picture, round((x - 0.5) * size["width"]), round((y - 0.5) * size["height"])
         ).click().perform()
 
@@ -86,10 +85,10 @@ class ExplorerTest(PageCase):
 
     def test_keys(self) -> None:
         self.js("arguments[0].focus({preventScroll: true})", self.picture)
-        keys = ActionChains(self.driver, duration=0)
+        keys = self.actions()
         keys.send_keys(*[Keys.ARROW_RIGHT] * 4, *[Keys.ARROW_DOWN] * 4).perform()
         self.assertIn("Pixel (3, 2) of 4×3: 1 VPL contributes 75.0 %", self.text())
-        ActionChains(self.driver, duration=0).send_keys(Keys.ESCAPE).perform()
+        self.actions().send_keys(Keys.ESCAPE).perform()
         self.assertIn("3 VPLs", self.text())
 
     def test_it_fits_a_narrow_page(self) -> None:

@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from selenium.webdriver import ActionChains
 from selenium.webdriver.common.keys import Keys
 
 from page_case import READ_PIXEL, PageCase
@@ -26,11 +25,11 @@ class ViewerTest(PageCase):
         self.assertEqual([self.colour(1.5, 2.5), self.colour(6.5, 2.5)], [a, reference])
         stage = self.one(".stage")
         width = stage.size["width"]
-        drag = ActionChains(self.driver, duration=0)
+        drag = self.actions()
         drag.move_to_element(self.one(".handle")).click_and_hold()
         drag.move_to_element_with_offset(stage, int(0.375 * width), 0).release().perform()
         self.assertEqual([self.colour(6.5, 2.5), self.colour(7.5, 2.5)], [a, reference])
-        ActionChains(self.driver, duration=0).move_to_element_with_offset(
+        self.actions().move_to_element_with_offset(
             stage, int(-0.375 * width), 0
         ).click().perform()
         self.assertEqual([self.colour(0.5, 2.5), self.colour(1.5, 2.5)], [a, reference])
@@ -65,8 +64,8 @@ class ViewerTest(PageCase):
         self.assertEqual(self.colour(1.5, 2.5), a)
 
     def test_keys_under_the_pointer(self) -> None:
-        ActionChains(self.driver, duration=0).move_to_element(self.one(".stage")).perform()
-        ActionChains(self.driver, duration=0).send_keys("3").perform()
+        self.actions().move_to_element(self.one(".stage")).perform()
+        self.actions().send_keys("3").perform()
         self.assertEqual(self.colour(1.5, 2.5), to_srgb8([0.125, 0.0625, 0.03125]))
 
     def test_exposure(self) -> None:
@@ -140,7 +139,7 @@ class ViewerTest(PageCase):
     def test_pixel_under_the_pointer(self) -> None:
         stage = self.one(".stage")
         size = stage.size["width"] / WIDTH
-        ActionChains(self.driver, duration=0).move_to_element_with_offset(
+        self.actions().move_to_element_with_offset(
             stage, int((5.5 - WIDTH / 2) * size), int((1.5 - HEIGHT / 2) * size)
         ).perform()
         self.assertEqual(self.one(".readout caption").text, "Pixel (5, 1), linear")
@@ -205,10 +204,10 @@ class ViewerTest(PageCase):
         )
         self.choose_range("2")
         self.assertEqual(self.ticks(), ["−200 %", "−100 %", "0", "+100 %", "+200 %"])
-        self.assertEqual(self.colour(1.5, 2.5), self.legend([0.5 + 0.5 * (1 / 1.1) / 2])[0])
+        self.assertEqual(self.colour(1.5, 2.5), self.legend(0.5 + 0.5 * (1 / 1.1) / 2))
         self.keys("3")
         darker = self.colour(1.5, 2.5)
-        self.assertEqual(darker, self.legend([0.5 - 0.5 * (0.5 / 1.1) / 2])[0])
+        self.assertEqual(darker, self.legend(0.5 - 0.5 * (0.5 / 1.1) / 2))
         self.assertGreater(darker[2], darker[0], "darker is blue")
 
     def test_squared_map_and_legend(self) -> None:
@@ -216,7 +215,7 @@ class ViewerTest(PageCase):
         self.choose_range("10")
         self.assertEqual(self.ticks(), ["10−3", "10−2", "10−1", "1", "101"])
         error = float(re.findall(r"relMSE ([\d.]+)", self.viewer.text)[0])
-        self.assertEqual(self.colour(1.5, 2.5), self.legend([1 + np.log10(error / 10) / 4])[0])
+        self.assertEqual(self.colour(1.5, 2.5), self.legend(1 + np.log10(error / 10) / 4))
         self.keys("m", "m")
         self.assertFalse(self.one(".legend").is_displayed())
 
@@ -233,7 +232,7 @@ class ViewerTest(PageCase):
                 )
             )
             self.assertGreater(np.ptp(expected), 0.15)
-            ramp = np.array(self.legend([i / 255 for i in range(256)]))
+            ramp = np.array(self.legends([i / 255 for i in range(256)]))
             places = list(np.ndindex(expected.shape))
             shown = self.colours([(x + 0.5, y + 0.5) for y, x in places])
             for (y, x), colour in zip(places, shown, strict=True):
@@ -252,7 +251,10 @@ class ViewerTest(PageCase):
             for t in self.viewer.find_elements("css selector", ".ticks > span")
         ]
 
-    def legend(self, shares: list[float]) -> list[list[int]]:
+    def legend(self, share: float) -> list[int]:
+        return self.legends([share])[0]
+
+    def legends(self, shares: list[float]) -> list[list[int]]:
         result: list[list[int]] = self.js(
             "const canvas = arguments[0].querySelector('.legend canvas');"
             "return arguments[1].map((share) => readPixel(canvas, Math.round(255 * share), 0));"

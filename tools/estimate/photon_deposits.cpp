@@ -86,12 +86,12 @@ PhotonStart startOf(const LightSet& lights, const PhotonRun& run, uint64_t photo
                     size_t& light, float& density) {
   density = 1.0f;
   if (!run.guide || !run.guide->guides()) {
-    light = run.shares.lightOf(photon);
+    light = run.perLight.lightOf(photon);
     PhotonStart start = lights.emit(light, rng);
-    start.flux *= run.shares.weight(light);
+    start.flux *= run.perLight.weight(light);
     return start;
   }
-  const auto total = static_cast<double>(run.shares.total());
+  const auto total = static_cast<double>(run.perLight.total());
   const EmissionSample e =
       run.guide->draw((static_cast<double>(photon) + double{rng.next()}) / total, rng);
   light = e.light;
@@ -105,7 +105,7 @@ PhotonStart startOf(const LightSet& lights, const PhotonRun& run, uint64_t photo
 }  // namespace
 
 PhotonSums tracePhotons(const EstimateInputs& in, const PhotonRun& run, const DepositRule& rule) {
-  const PhotonsPerLight& shares = run.shares;
+  const PhotonsPerLight& perLight = run.perLight;
   const ProgressFn& progress = in.progress;
   const WorkControls& controls = in.controls;
   if (controls.source) return sumsOfShards(in, run);
@@ -134,11 +134,11 @@ PhotonSums tracePhotons(const EstimateInputs& in, const PhotonRun& run, const De
         },
         sums);
   };
-  std::vector<uint8_t> done = unitsToDo(rangesOf(shares.total()), controls.shard);
+  std::vector<uint8_t> done = unitsToDo(rangesOf(perLight.total()), controls.shard);
   PhotonSums before = fresh();
   if (!controls.state.empty()) decode(controls.state, done, before);
   const auto photonsOf = [&](size_t range) {
-    return std::min(kPhotonsPerRange, shares.total() - range * kPhotonsPerRange);
+    return std::min(kPhotonsPerRange, perLight.total() - range * kPhotonsPerRange);
   };
   for (size_t range = 0; progress && range < done.size(); ++range) {
     if (done[range] == 1) progress(photonsOf(range));
@@ -246,18 +246,18 @@ VplGroups PhotonDeposits::groupFlux(const PhotonSums& sums) const {
 EstimateResult estimateByPhotons(const EstimateInputs& in, const Values& options,
                                  const DepositRule& rule) {
   in.lights.requirePower();
-  const PhotonsPerLight shares(in.lights, options[kPhotonsOption]);
-  const PhotonDeposits deposits(in, options.real32(kRadiusOption), shares.total());
+  const PhotonsPerLight perLight(in.lights, options[kPhotonsOption]);
+  const PhotonDeposits deposits(in, options.real32(kRadiusOption), perLight.total());
   const auto maxBounces = static_cast<unsigned>(options[kPhotonBouncesOption]);
-  const LearnedEmission emission = learnPhotonEmission(in, options, maxBounces, shares.total());
+  const LearnedEmission emission = learnPhotonEmission(in, options, maxBounces, perLight.total());
   const PhotonRun run{streamKey(options[kSeedOption], RandomStream::Photons),
                       options[kEmitPointsOption],
                       maxBounces,
-                      shares,
+                      perLight,
                       deposits,
                       &emission.guide};
   const PhotonSums sums = tracePhotons(in, run, rule);
-  EstimateResult result{in.vpls, accountOf(sums, deposits, shares.total())};
+  EstimateResult result{in.vpls, accountOf(sums, deposits, perLight.total())};
   result.useful = emission.useful;
   fillTable(result.table, sums, deposits);
   finishGroups(deposits.groupFlux(sums), result.table);

@@ -102,7 +102,7 @@ struct PhotonRun {
   uint64_t key;       // random numbers
   size_t emitPoints;  // per VPL
   unsigned maxBounces;
-  const PhotonsPerLight& shares;
+  const PhotonsPerLight& perLight;
   const PhotonDeposits& deposits;
   const EmissionGuide* guide = nullptr;  // null: photons by power
 };

@@ -19,7 +19,7 @@ constexpr double kMinFlux = 0.1;
 // Weights of the VPLs' variances: one over the flux, by photons that start in proportion to power.
 std::vector<double> weightsByFlux(const EstimateInputs& in, const PhotonDeposits& deposits,
                                   const PhotonRun& run) {
-  const auto phase = in.progress.beginPhase("flux pilot, photons", run.shares.total());
+  const auto phase = in.progress.beginPhase("flux pilot, photons", run.perLight.total());
   const PhotonSums sums =
       tracePhotons({in.vpls, in.accel, in.lights, in.progress, {}}, run, depositToOneInSight);
   std::vector<double> weights(in.vpls.size());
@@ -43,10 +43,11 @@ LearnedEmission learnPhotonEmission(const EstimateInputs& in, const Values& opti
   const CostTrial::Part part(in.controls.trial,
                              static_cast<double>(pilot) / static_cast<double>(sent));
   const uint64_t key = streamKey(options[kSeedOption], RandomStream::PhotonEmission);
-  const PhotonsPerLight shares(in.lights, std::max<uint64_t>(1, sent / kPilotPhotonsPerFluxPhoton));
-  const PhotonDeposits deposits(in, options.real32(kRadiusOption), shares.total());
+  const PhotonsPerLight perLight(in.lights,
+                                 std::max<uint64_t>(1, sent / kPilotPhotonsPerFluxPhoton));
+  const PhotonDeposits deposits(in, options.real32(kRadiusOption), perLight.total());
   const std::vector<double> weights =
-      weightsByFlux(in, deposits, {mix64(key), 0, maxBounces, shares, deposits});
+      weightsByFlux(in, deposits, {mix64(key), 0, maxBounces, perLight, deposits});
   const Coverage& coverage = deposits.coverage();
   return learnEmission(
       in.lights, sent - sent / kPilotPhotonsPerFluxPhoton, key,

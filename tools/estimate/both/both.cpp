@@ -47,12 +47,13 @@ constexpr size_t kPhotonPilotPhase = 0, kPathPilotPhase = 1, kPhotonPhase = 2, k
 
 // Photons of a phase, and the sums of their deposits.
 struct PhotonWork {
-  PhotonsPerLight shares;
+  PhotonsPerLight perLight;
   PhotonDeposits deposits;
   PhotonSums sums;
 
   PhotonWork(const EstimateInputs& in, const Values& options, uint64_t photons)
-      : shares(in.lights, photons), deposits(in, options.real32(kRadiusOption), shares.total()) {}
+      : perLight(in.lights, photons),
+        deposits(in, options.real32(kRadiusOption), perLight.total()) {}
 
   double mean3(const std::array<int64_t, 3>& v) const {
     const FixedPoint& f = deposits.fixed();
@@ -124,19 +125,19 @@ class Estimator {
     const PhotonRun run{streamKey(options_[kSeedOption], stream),
                         emitPointsOf(phase),
                         maxBounces(),
-                        work.shares,
+                        work.perLight,
                         work.deposits,
                         &emission_.guide};
     const auto equivalent = static_cast<uint64_t>(progressScale_ * static_cast<double>(count));
     work.sums = phases_.run(
         phase, trialScale,
         [&](const WorkControls& controls) {
-          return withProgress(equivalent, work.shares.total(), [&](const ProgressFn& progress) {
+          return withProgress(equivalent, work.perLight.total(), [&](const ProgressFn& progress) {
             return tracePhotons({in_.vpls, in_.accel, in_.lights, progress, controls}, run,
                                 depositToOneInSight);
           });
         },
-        [&](const PhotonSums& sums) { return finishedState(sums, work.shares.total()); });
+        [&](const PhotonSums& sums) { return finishedState(sums, work.perLight.total()); });
     return work;
   }
 
@@ -195,7 +196,7 @@ class Estimator {
     const PhotonWork photons = trace(kPhotonPilotPhase, RandomStream::PilotPhotons, sent, {},
                                      static_cast<double>(few) / static_cast<double>(sent));
     if (sent < few) reported_ = few;
-    pilots.photons = static_cast<double>(photons.shares.total());
+    pilots.photons = static_cast<double>(photons.perLight.total());
     pilots.photonPower = photons.deposits.photonPower();
     pilots.photonCost =
         static_cast<double>(photons.sums.rays + photons.sums.guardRays) / pilots.photons;
@@ -293,7 +294,7 @@ class Estimator {
   EstimateResult combine(const Split& split, const PhotonWork& photons,
                          const PathResult& paths) const {
     EstimateResult result{in_.vpls,
-                          accountOf(photons.sums, photons.deposits, photons.shares.total()), 0};
+                          accountOf(photons.sums, photons.deposits, photons.perLight.total()), 0};
     VplTable& lit = result.table;
     beginLit(lit, options_.real32(kRadiusOption));
     const FixedPoint& fixed = photons.deposits.fixed();

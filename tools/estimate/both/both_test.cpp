@@ -64,16 +64,16 @@ TEST(Both, PhotonsAndPathsShareTheLightOfGuidedEmission) {
   const VplTable truth = lit(world, vpls, "paths", "1000", {{"points", "512"}});
 
   const EstimateInputs in{vpls, world.accel, world.lights, {}, {}};
-  const PhotonsPerLight shares(world.lights, 1'000'000);
-  const LearnedEmission learned =
-      learnPhotonEmission(in, resolve(estimateSpec(), {{"method", "guarded"}}), 32, shares.total());
+  const PhotonsPerLight perLight(world.lights, 1'000'000);
+  const LearnedEmission learned = learnPhotonEmission(
+      in, resolve(estimateSpec(), {{"method", "guarded"}}), 32, perLight.total());
   EXPECT_GT(learned.useful.guided, 2.0 * learned.useful.byPower);
   for (const float balance : {0.3f, 3.0f, 30.0f}) {
     const std::vector<float> balances(vpls.size(), balance);
-    PhotonDeposits deposits(in, 1.7f, shares.total());
+    PhotonDeposits deposits(in, 1.7f, perLight.total());
     deposits.setMisRatios(balances);
     const PhotonSums photons =
-        tracePhotons(in, {1, 0, 32, shares, deposits, &learned.guide}, depositToOneInSight);
+        tracePhotons(in, {1, 0, 32, perLight, deposits, &learned.guide}, depositToOneInSight);
     const VplPaths paths(in, {2, 4, 32, 1.7f, 0, nullptr, balances, &learned.guide});
     const std::vector<uint64_t> points(vpls.size(), 64);
     double sum = 0.0, ofPaths = 0.0;

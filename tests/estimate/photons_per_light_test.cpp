@@ -1,9 +1,10 @@
 // Photons are shared among lights of any power, and their weights preserve the energy.
+#include "tools/estimate/photons_per_light.h"
+
 #include <gtest/gtest.h>
 
 #include "tests/support/grey_cube.h"
 #include "tests/transport/plain_scene.h"
-#include "tools/estimate/photons_per_light.h"
 
 namespace bnvpl::test {
 namespace {
@@ -23,11 +24,11 @@ World lampsOf(const std::vector<float>& intensities) {
 }
 
 // Counts the photons of each light. Photons are ordered by light, and their weights sum to 1.
-Counts countsOf(const World& world, const PhotonsPerLight& shares) {
+Counts countsOf(const World& world, const PhotonsPerLight& perLight) {
   Counts counts(world.lights.size(), 0);
   size_t before = 0;
-  for (uint64_t photon = 0; photon < shares.total(); ++photon) {
-    const size_t light = shares.lightOf(photon);
+  for (uint64_t photon = 0; photon < perLight.total(); ++photon) {
+    const size_t light = perLight.lightOf(photon);
     EXPECT_LT(light, counts.size());
     EXPECT_GE(light, before) << photon;
     before = light;
@@ -35,7 +36,7 @@ Counts countsOf(const World& world, const PhotonsPerLight& shares) {
   }
   for (size_t l = 0; l < counts.size(); ++l) {
     if (counts[l] == 0) continue;
-    EXPECT_FLOAT_EQ(shares.weight(l) * static_cast<float>(counts[l]), 1.0f) << l;
+    EXPECT_FLOAT_EQ(perLight.weight(l) * static_cast<float>(counts[l]), 1.0f) << l;
   }
   return counts;
 }
