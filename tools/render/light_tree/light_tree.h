@@ -36,7 +36,7 @@ struct LightNode {
   Vec3 intensity;                                  // sum over the cluster, W/sr
   VplKind kind = {};
   float size2 = 0.0f;  // smallest in the cluster, so that bounds hold for all of its VPLs
-  // By how much `bounds` exceeds the box of its VPLs' centres (VplLights::box).
+  // Distance by which `bounds` exceeds the box of its VPLs' centres (VplLights::box).
   float boxMargin = 0.0f;
   uint32_t representative = 0;
   uint32_t left = 0, right = 0;  // both are 0 in a leaf
