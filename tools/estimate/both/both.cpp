@@ -51,9 +51,8 @@ struct PhotonWork {
   PhotonDeposits deposits;
   PhotonSums sums;
 
-  PhotonWork(const EstimateInputs& in, const Values& options, uint64_t photons)
-      : perLight(in.lights, photons),
-        deposits(in, options.real32(kRadiusOption), perLight.total()) {}
+  PhotonWork(const EstimateInputs& in, const Values& options, uint64_t count)
+      : perLight(in.lights, count), deposits(in, options.real32(kRadiusOption), perLight.total()) {}
 
   double mean3(const std::array<int64_t, 3>& v) const {
     const FixedPoint& f = deposits.fixed();
