@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
-# Turns a fresh clone into a picture: installs missing packages, builds the tools, and renders the
+# Turns a fresh clone into a picture: installs missing packages, builds the stages, and renders the
 # U-shaped scene through the four stages. Settings may be added: scripts/demo.sh SPP=8
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 scripts/install_packages.sh --build
-echo "Building the tools into build/release"
+echo "Building the four stages into build/release"
 cmake --preset release
-cmake --build --preset release --target vpl-place vpl-eliminate vpl-estimate vpl-render vpl-inspect
+cmake --build --preset release --target vpl-place vpl-eliminate vpl-estimate vpl-render
 
 echo "Rendering scenes/u-shape"
 make --no-print-directory -f pipelines/Makefile SCENE=scenes/u-shape/scene.toml OUT=out/u-shape \

@@ -118,7 +118,7 @@ class Checkpoints(Workbench):
                         self.assertEqual(self.states(command)[command.outputs[0]], "old", what)
                     self.assertEqual(self.run_command(command).code, OK, what)
                     self.assert_done(command, what)
-                    at += 1 if FULL or at < 4 else self.random.randint(at // 2, at)
+                    at += 1 if FULL or at < 6 else self.random.randint(at // 2, at)
                 self.assertGreater(tried, 5)
                 self.say(f"{command.name}: {tried} calls of {call} failed in turn")
 

@@ -1,6 +1,5 @@
 // vpl-eliminate: keeps the COUNT candidates that are spread best.
 //   vpl-eliminate candidates.vpl -o vpls.vpl -n 3k
-#include <CLI/CLI.hpp>
 #include <optional>
 
 #include "core/hash.h"
@@ -78,12 +77,13 @@ int runEliminate(const StageRequest& request, const fs::path& input, const ToolO
 // NOLINTNEXTLINE(bugprone-exception-escape): options declared wrongly would throw at every start
 int main(int argc, char** argv) {
   using namespace bnvpl;
-  CLI::App cli{"Keep the candidates that are spread best over the surfaces.", "vpl-eliminate"};
+  const CommandLine cli{"Keep the candidates that are spread best over the surfaces.",
+                        "vpl-eliminate"};
   StageRequest request;
   ToolOptions tool;
   fs::path input;
-  addFile(cli, "candidates", input, "from vpl-place (.vpl)")->required();
-  addFile(cli, "-o,--output", request.output, "VPLs without flux (.vpl)")->required();
+  required(addFile(cli, "candidates", input, "from vpl-place (.vpl)"));
+  required(addFile(cli, "-o,--output", request.output, "VPLs without flux (.vpl)"));
   addSceneFlag(cli, request.scene, "the scene, for methods that ask for it");
   addStageRequest(cli, eliminateSpec(), request, tool);
   return runTool(cli, tool, argc, argv, [&] { return runEliminate(request, input, tool); });

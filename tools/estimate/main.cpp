@@ -1,7 +1,5 @@
 // vpl-estimate: photons from the lights and paths from the VPLs estimate the flux of each VPL.
 //   vpl-estimate scene.toml vpls.vpl -o lit.vpl --photons 10M
-#include <CLI/CLI.hpp>
-
 #include "core/hash.h"
 #include "formats/vpl/vpl_io.h"
 #include "tools/common/run/memory.h"
@@ -72,13 +70,14 @@ int runEstimate(const StageRequest& request, const fs::path& input, const ToolOp
 // NOLINTNEXTLINE(bugprone-exception-escape): options declared wrongly would throw at every start
 int main(int argc, char** argv) {
   using namespace bnvpl;
-  CLI::App cli{"Find the flux that leaves each VPL's share of the surface.", "vpl-estimate"};
+  const CommandLine cli{"Find the flux that leaves each VPL's share of the surface.",
+                        "vpl-estimate"};
   ToolOptions tool;
   StageRequest request;
   fs::path input;
   addSceneOptions(cli, request.scene, ViewCount::None);
-  addFile(cli, "vpls", input, "from vpl-eliminate (.vpl)")->required();
-  addFile(cli, "-o,--output", request.output, "lit VPLs (.vpl)")->required();
+  required(addFile(cli, "vpls", input, "from vpl-eliminate (.vpl)"));
+  required(addFile(cli, "-o,--output", request.output, "lit VPLs (.vpl)"));
   addStageRequest(cli, estimateSpec(), request, tool, "photons, or of the VPLs for paths");
   return runTool(cli, tool, argc, argv, [&] {
     request.command = commandOf(cli);

@@ -34,7 +34,7 @@ std::vector<StageRecord> parseProvenance(const fs::path& file, const std::string
     throw InputError(file,
                      "its provenance is not a JSON array of objects, or is nested too deeply");
   }
-  const Json json = Json::parse(text);
+  const Json json = parseJson(text);
   for (const Json& entry : json) {
     StageRecord record;
     record.tool = textAt(entry, "tool");

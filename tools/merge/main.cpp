@@ -1,6 +1,5 @@
 // vpl-merge: merges the shards of a stage into the same bytes that the stage writes without
 // --shard.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 
 #include "core/files.h"
@@ -62,25 +61,24 @@ int runMerge(const std::vector<fs::path>& inputs, const MergeOutput& output,
 // NOLINTNEXTLINE(bugprone-exception-escape): only a wrongly declared option throws, at every start
 int main(int argc, char** argv) {
   using namespace bnvpl;
-  CLI::App cli{"Merge the shards of a stage.", "vpl-merge"};
+  const CommandLine cli{"Merge the shards of a stage.", "vpl-merge"};
   std::vector<fs::path> inputs;
   MergeOutput output;
   ToolOptions tool;
-  addFile(cli, "shards", inputs, "shards that a stage made with --shard (.shard), in any order")
-      ->required();
-  addFile(cli, "-o,--output", output.product,
-          "output of the stage (.vpl, .exr), or one shard of all given parts (.shard)")
-      ->required();
-  CLI::Option* png = addFile(cli, "--png", output.png, "also write a preview of an image");
-  addOption(cli,
-            inTopic(Topic::Files, textOption("exposure", "auto", "EV|auto",
-                                             "exposure of the PNG, in stops; auto: maps the "
-                                             "log-average to middle grey")),
-            [&output](const Value& value) {
-              output.exposure = std::get<std::string>(value);
-              parseExposure(output.exposure);
-            })
-      ->needs(png);
+  required(addFile(cli, "shards", inputs,
+                   "shards that a stage made with --shard (.shard), in any order"));
+  required(addFile(cli, "-o,--output", output.product,
+                   "output of the stage (.vpl, .exr), or one shard of all given parts (.shard)"));
+  addFile(cli, "--png", output.png, "also write a preview of an image");
+  needing("--png", addOption(cli,
+                             inTopic(Topic::Files,
+                                     textOption("exposure", "auto", "EV|auto",
+                                                "exposure of the PNG, in stops; auto: maps the "
+                                                "log-average to middle grey")),
+                             [&output](const Value& value) {
+                               output.exposure = std::get<std::string>(value);
+                               parseExposure(output.exposure);
+                             }));
   addExamples(cli, {{"all shards of a stage", "vpl-merge parts/*.shard -o lit.vpl"},
                     {"an image, with a preview", "vpl-merge *.shard -o image.exr --png image.png"},
                     {"shards, for a later merge", "vpl-merge 1.shard 2.shard -o 1-2.shard"}});

@@ -1,7 +1,5 @@
 // vpl-place: places candidate VPLs where camera paths hit after their first rough bounce.
 //   vpl-place scene.toml -o candidates.vpl -n 60k
-#include <CLI/CLI.hpp>
-
 #include "core/hash.h"
 #include "core/memory.h"
 #include "formats/vpl/vpl_io.h"
@@ -70,16 +68,16 @@ int runPlace(const Request& request, const ToolOptions& tool) {
 // NOLINTNEXTLINE(bugprone-exception-escape): options declared wrongly would throw at every start
 int main(int argc, char** argv) {
   using namespace bnvpl;
-  CLI::App cli{"Place candidate VPLs on the surfaces that light the view.", "vpl-place"};
+  const CommandLine cli{"Place candidate VPLs on the surfaces that light the view.", "vpl-place"};
   Request request;
   ToolOptions tool;
   addSceneOptions(cli, request.scene, ViewCount::Several);
   addOption(cli, kViewSharesOption, [&request](const Value& value) {
     request.viewShares = parseViewShares(std::get<std::string>(value));
   });
-  addFile(cli, "-o,--output", request.output, "candidates (.vpl)")->required();
+  required(addFile(cli, "-o,--output", request.output, "candidates (.vpl)"));
   addStageRequest(cli, placeSpec(), request, tool, "paths");
-  addReal(cli, kSpareOption, request.shardSpare)->needs("--shard");
+  needing("--shard", addReal(cli, kSpareOption, request.shardSpare));
   return runTool(cli, tool, argc, argv, [&] {
     request.command = commandOf(cli);
     return runPlace(request, tool);

@@ -1,7 +1,5 @@
 // vpl-render: renders direct light plus all VPLs, or a reference by path or light tracing.
 //   vpl-render scene.toml lit.vpl -o image.exr --spp 8 --png image.png
-#include <CLI/CLI.hpp>
-
 #include "core/hash.h"
 #include "tools/common/stage/stage_run.h"
 #include "tools/render/cost_of_rendering.h"
@@ -73,13 +71,13 @@ int runRender(StageRequest& request, const RenderFiles& files, const ToolOptions
 // NOLINTNEXTLINE(bugprone-exception-escape): options declared wrongly would throw at every start
 int main(int argc, char** argv) {
   using namespace bnvpl;
-  CLI::App cli{"Render the scene, lit by its lights and the VPLs.", "vpl-render"};
+  const CommandLine cli{"Render the scene, lit by its lights and the VPLs.", "vpl-render"};
   ToolOptions tool;
   StageRequest request;
   RenderFiles files;
   addSceneOptions(cli, request.scene);
   addFile(cli, "lit", files.lit, "lit VPLs (.vpl), for integrators that take them");
-  addFile(cli, "-o,--output", request.output, "image (.exr)")->required();
+  required(addFile(cli, "-o,--output", request.output, "image (.exr)"));
   addFile(cli, "--png", files.png, "also write a preview");
   addPreviewOption(cli, files.viewer);
   addStageRequest(cli, renderSpec(), request, tool, "tiles and photons");

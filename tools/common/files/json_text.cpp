@@ -8,6 +8,10 @@ std::string jsonText(const Json& json, int indent) {
   return json.dump(indent, ' ', /*ensure_ascii=*/false, Json::error_handler_t::replace);
 }
 
+Json parseJson(const std::string& text) {
+  return Json::parse(text, nullptr, /*allow_exceptions=*/false);
+}
+
 Json withEscapedNames(const Json& json) {
   if (json.is_string()) return escapedLine(json.get_ref<const std::string&>());
   if (!json.is_structured()) return json;

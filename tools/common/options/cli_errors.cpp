@@ -1,7 +1,7 @@
 #include "tools/common/options/cli_errors.h"
 
 #include <array>
-#include <regex>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -76,25 +76,36 @@ std::string describeExtras(const std::vector<std::string>& words) {
                  : "leave it out, or put names with blanks in quotes");
 }
 
+struct SplitText {
+  std::string before, after;
+};
+
+// The parts of a text around the last place of `middle`.
+std::optional<SplitText> splitAt(const std::string& text, const std::string& middle) {
+  const size_t at = text.rfind(middle);
+  if (at == std::string::npos) return std::nullopt;
+  return SplitText{text.substr(0, at), text.substr(at + middle.size())};
+}
+
 std::string describeAny(const CLI::ParseError& error, const CLI::App& cli) {
   const std::string text = error.what();
   const std::vector<std::string> words = cli.remaining(true);
-  std::smatch match;
   // A mistyped option may be the one that seems to be missing.
   const std::string mistyped = describeMistyped(cli, words);
   if (!mistyped.empty()) return mistyped;
   if (text == "A subcommand is required") return describeCommand(cli, words);
   if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr && !words.empty())
     return describeExtras(words);
-  if (std::regex_match(text, match, std::regex("(.*): At Most \\d+ required but received \\d+")))
-    return match.str(1) + " is given more than once; leave all but one out";
-  if (std::regex_match(text, match, std::regex("(.*): \\d+ required (\\S+) missing")))
-    return match.str(1) + " needs a value: " + match.str(2);
-  if (std::regex_match(text, match, std::regex("(.*) requires (.*)")))
-    return match.str(1) + " has an effect only with " + match.str(2) +
+  if (const auto found = splitAt(text, ": At Most "))
+    return found->before + " is given more than once; leave all but one out";
+  if (const auto found = splitAt(text, " required "); found && found->after.ends_with(" missing"))
+    return found->before.substr(0, found->before.rfind(": ")) +
+           " needs a value: " + found->after.substr(0, found->after.rfind(' '));
+  if (const auto found = splitAt(text, " requires "))
+    return found->before + " has an effect only with " + found->after +
            "; add that, or leave it out";
-  if (std::regex_match(text, match, std::regex("(.*) excludes (.*)")))
-    return match.str(1) + " and " + match.str(2) + " cannot be given together; leave one out";
+  if (const auto found = splitAt(text, " excludes "))
+    return found->before + " and " + found->after + " cannot be given together; leave one out";
   return text;
 }
 

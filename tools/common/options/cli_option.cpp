@@ -7,6 +7,13 @@
 
 namespace bnvpl {
 
+CommandLine::CommandLine(const std::string& description, const std::string& tool)
+    : app_(std::make_shared<CLI::App>(description, tool)) {}
+
+CLI::Option* required(CLI::Option* option) { return option->required(); }
+
+CLI::Option* needing(const std::string& other, CLI::Option* option) { return option->needs(other); }
+
 CLI::Option* addOption(CLI::App& cli, const Option& option,
                        std::function<void(const Value&)> take) {
   const std::string letter(option.letter);

@@ -1,7 +1,10 @@
-// Options on a command line outside the table of a stage.
+// A tool's command line, and options on it outside the table of a stage.
+//
+// CLI11's own header takes ten seconds to compile, so that the mains of the stages do without it.
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -10,6 +13,19 @@
 #include "tools/common/options/option.h"
 
 namespace bnvpl {
+
+class CommandLine {
+ public:
+  CommandLine(const std::string& description, const std::string& tool);
+  operator CLI::App&() const { return *app_; }
+
+ private:
+  std::shared_ptr<CLI::App> app_;
+};
+
+// Makes an option required, or one that is refused without another; returns the option.
+CLI::Option* required(CLI::Option* option);
+CLI::Option* needing(const std::string& other, CLI::Option* option);
 
 // Adds an option of one tool, parsed like those of a stage. `take` receives the value. An invalid
 // value makes the parsing of the command line throw UsageError.

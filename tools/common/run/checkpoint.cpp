@@ -47,7 +47,7 @@ std::string difference(const Json& before, const Json& now, const std::string& p
 std::string stateIn(const fs::path& file, const Json& run) {
   std::optional<CheckpointFile> found = findCheckpoint(file);
   if (!found) return "";  // another run of the command has just ended
-  const Json theirs = Json::parse(found->run, nullptr, /*allow_exceptions=*/false);
+  const Json theirs = parseJson(found->run);
   if (theirs != run) {
     throw InputError(file, "is the checkpoint of another run (" + differenceOf(theirs, run) +
                                "); repeat that run's command, name another file, or add "

@@ -270,7 +270,7 @@ Processor processorOf(const Json& record) {
 }
 
 std::string extendProvenance(const std::string& earlier, const Json& record) {
-  Json chain = earlier.empty() ? Json::array() : Json::parse(earlier);
+  Json chain = earlier.empty() ? Json::array() : parseJson(earlier);
   chain.push_back(record);
   return jsonText(chain);
 }

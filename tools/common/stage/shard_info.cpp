@@ -28,7 +28,7 @@ std::string textOf(const ShardInfo& info) {
 ShardInfo parseShardInfo(const fs::path& file, const std::string& text) {
   // The object is checked as the only one of an array: isProvenance() tests depth and UTF-8.
   const std::string list = "[" + text + "]";
-  const Json all = isProvenance(list) ? Json::parse(list) : Json::array();
+  const Json all = isProvenance(list) ? parseJson(list) : Json::array();
   if (all.size() != 1)
     throw InputError(file, "is damaged (what it says of itself); delete it and make it again");
   const Json& json = all.front();

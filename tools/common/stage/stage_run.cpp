@@ -1,7 +1,5 @@
 #include "tools/common/stage/stage_run.h"
 
-#include <CLI/CLI.hpp>
-
 #include "tools/common/files/depfile.h"
 #include "tools/common/run/exit_codes.h"
 #include "tools/common/run/progress_meter.h"

@@ -99,7 +99,7 @@ Json spacingJson(const VplTable& table) {
 }
 
 Json provenanceJson(const std::string& text) {
-  return text.empty() ? Json::array() : Json::parse(text, nullptr, false);
+  return text.empty() ? Json::array() : parseJson(text);
 }
 
 }  // namespace

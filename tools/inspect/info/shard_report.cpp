@@ -55,7 +55,7 @@ Json describeShard(const fs::path& file) {
           {"build", fieldOf<std::string>(info.run.run, "version")},
           {"processor", info.processor},
           {"command", info.run.command},
-          {"provenance", Json::parse(history)},
+          {"provenance", parseJson(history)},
           {"works", describeWorks(reader)}};
 }
 

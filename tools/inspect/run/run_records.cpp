@@ -23,7 +23,7 @@ class Record {
   explicit Record(const fs::path& file) : file_(file) {
     if (!isRegularFile(file)) fail("is not a regular file");
     if (fs::file_size(file) > kMaxBytes) fail("is too large for a record");
-    json_ = Json::parse(readText(file), nullptr, false);
+    json_ = parseJson(readText(file));
     if (!json_.is_object()) fail("is no record of pipelines/record.py");
   }
 

@@ -84,7 +84,7 @@ std::string cleanName(std::string name) {
     const auto code = static_cast<unsigned char>(c);
     if (code < 0x20 || code == 0x7f || c == '\\' || c == '#') c = '_';
   }
-  name = Json::parse(jsonText(name));  // replaces bytes that are not UTF-8
+  name = parseJson(jsonText(name));  // replaces bytes that are not UTF-8
   const size_t first = std::min(name.find_first_not_of(' '), name.size());
   return name.substr(first, name.find_last_not_of(' ') + 1 - first);
 }

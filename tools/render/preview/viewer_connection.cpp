@@ -5,12 +5,12 @@
 #include <sys/time.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <cerrno>
 #include <charconv>
 #include <memory>
 
 #include "core/errors.h"
+#include "tools/common/options/cli_option.h"
 #include "tools/render/preview/tev_packets.h"
 
 namespace bnvpl {
@@ -38,8 +38,10 @@ std::string addressText(const ViewerAddress& a) {
 }
 
 void addPreviewOption(CLI::App& cli, std::string& address) {
-  cli.add_option("--preview", address, "show the image while it comes, in the viewer tev")
-      ->type_name("HOST[:PORT]");
+  addOption(cli,
+            inTopic(Topic::Main, textOption("preview", "", "HOST[:PORT]",
+                                            "show the image while it comes, in the viewer tev")),
+            [&address](const Value& value) { address = std::get<std::string>(value); });
 }
 
 ViewerAddress parseViewerAddress(const std::string& text) {

@@ -6,9 +6,7 @@
 #include <string_view>
 #include <utility>
 
-namespace CLI {
-class App;
-}
+#include "tools/common/options/cli_types.h"
 
 namespace bnvpl {
 
