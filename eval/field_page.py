@@ -10,6 +10,7 @@ The least error of a scene is bold, and with it those that lie within the standa
 
 import argparse
 import json
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -34,7 +35,8 @@ def within_the_best(rows: list[Row]) -> list[Row]:
     return [r for r in rows if r["relmse"] - r.get("relmse_error", 0.0) <= limit]
 
 
-def table(results: list[Row]) -> str:
+def table(results: list[Row], gathers: Iterable[str] = ()) -> str:
+    """A row for each gather that has one; those of `gathers` that have none are named below."""
     rows = [r for r in results if r["part"] == "field"]
     at_time = [r for r in rows if r["at"] == "equal time"]
     most = max(int(r["vpls"]) for r in at_time)
@@ -50,7 +52,7 @@ def table(results: list[Row]) -> str:
     heads += ["shadow rays a sample"]
     lines = ["| " + " | ".join(heads) + " |", "|---" * len(heads) + "|"]
     too_slow: list[str] = []
-    for gather in sorted({r["gather"] for r in rows}):
+    for gather in sorted({*gathers, *(r["gather"] for r in rows)}):
         cells = []
         for column in columns:
             here = shown.get((gather, *column))
@@ -74,8 +76,10 @@ def main() -> None:
     parser.add_argument("folder", type=Path, help="of results.json")
     arguments = parser.parse_args()
     found = json.loads((arguments.folder / "results.json").read_text())
+    folders = (settings.ROOT / "tools/render/gather").glob("*/theory.md")
+    gathers = [theory.parent.name.replace("_", "-") for theory in folders]
     made = f"<!-- tools of {found['provenance']['commit']}, {found['provenance']['date']} -->"
-    put(PAGE, "field", f"{table(found['results'])}\n\n{made}")
+    put(PAGE, "field", f"{table(found['results'], gathers)}\n\n{made}")
 
 
 if __name__ == "__main__":

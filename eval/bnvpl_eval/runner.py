@@ -123,6 +123,8 @@ class Runner:
             return self.runs[key]
         folder = self.cache / key
         if not (folder / "run.json").is_file():
+            if self._was_stopped(key, tool):
+                raise TookTooLong
             self._execute(key, executable, words, inputs, folder)
         for name in outputs:
             if not (folder / name).is_file():
@@ -146,6 +148,14 @@ class Runner:
 
     def _limit_of(self, tool: str) -> float:
         return self.limit_cpu_s if tool == self.limited_tool else math.inf
+
+    def _stopped(self, key: str) -> Path:
+        """The file that remembers at which limit of CPU seconds a run was stopped."""
+        return self.cache / f"{key}.stopped"
+
+    def _was_stopped(self, key: str, tool: str) -> bool:
+        stopped = self._stopped(key)
+        return stopped.is_file() and float(stopped.read_text()) >= self._limit_of(tool)
 
     def _require_unchanged(self, executable: Path) -> None:
         """Ends the program if a tool has changed, so that no report mixes two versions of it."""
@@ -195,6 +205,7 @@ class Runner:
             text = (partial / "log.txt").read_text(errors="replace").strip()
             shutil.rmtree(partial)
             if child.returncode == -signal.SIGXCPU:
+                self._stopped(key).write_text(f"{self.limit_cpu_s}\n")
                 raise TookTooLong
             raise ToolFailed(command, child.returncode, text)
         stats = partial / "stats.json"

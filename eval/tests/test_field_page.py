@@ -56,6 +56,11 @@ class FieldPage(unittest.TestCase):
         )
         self.assertEqual(made[2], ["a", "**0.2**", "-", "1000"])
 
+    def test_gathers_without_a_row_are_named(self) -> None:
+        rows = [row("a", "equal time", 1000, 0.3), row("b", "equal VPLs", 1000, 0.3)]
+        text = field_page.table(rows, ["a", "b", "c"])
+        self.assertTrue(text.endswith("\n\nToo slow for this time: b, c."), text)
+
 
 if __name__ == "__main__":
     unittest.main()

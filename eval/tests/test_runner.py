@@ -56,14 +56,21 @@ class Caching(unittest.TestCase):
         runner = Runner(self.folder, self.folder / "cache", quiet=True)
         with self.assertRaises(TookTooLong), runner.limited("vpl-fake", 1):
             self.run_tool("endless", runner)
-        self.assertEqual(list((self.folder / "cache").iterdir()), [])
+        self.assertEqual(self.calls(), 1)
+        self.assertEqual([f.suffix for f in (self.folder / "cache").iterdir()], [".stopped"])
+        with self.assertRaises(TookTooLong), runner.limited("vpl-fake", 1):
+            self.run_tool("endless", runner)
+        self.assertEqual(self.calls(), 1, "what was stopped is not run again at its limit")
+        with self.assertRaises(TookTooLong), runner.limited("vpl-fake", 1.5):
+            self.run_tool("endless", runner)
+        self.assertEqual(self.calls(), 2, "but within a higher one")
         with runner.limited("vpl-fake", 1):
             self.assertGreater(self.run_tool("a", runner).cpu_s, 0.0)
         with self.assertRaises(TookTooLong), runner.limited("vpl-fake", 0):
             self.run_tool("a", runner)
         with runner.limited("vpl-other", 0):
             self.run_tool("a", runner)
-        self.assertEqual(self.calls(), 2)
+        self.assertEqual(self.calls(), 3)
 
     def test_a_changed_product_reruns_what_follows(self) -> None:
         runner = Runner(self.folder, self.folder / "cache", quiet=True)

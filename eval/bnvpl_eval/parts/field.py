@@ -22,7 +22,7 @@ from ..tables import column, table
 from .convergence import series
 
 NONE = "none"
-DEFAULT_GATHER = "tilecuts"  # the default of vpl-render, which a viewer shows first
+DEFAULT = "tilecuts-near-field"  # of vpl-render, which a viewer shows first
 EQUAL_VPLS, EQUAL_TIME = "equal VPLs", "equal time"
 MAX_SPP = 1024  # at equal time
 CLOSE_ENOUGH = 0.05  # to the time, for a number of samples that has been run
@@ -247,14 +247,14 @@ def add_pictures(context: Context, view: View, rows: list[dict[str, Any]]) -> No
                 f"{row['relmse']:.3g} ({row['seeds']} seeds)",
             }
         )
-    default = [identity(row) for row in rows if row["gather"] == DEFAULT_GATHER]
+    names = [identity(row) for row in rows]
     c = context.configuration(view, "local")
     vpls = context.size["equal_time_vpls"]
     c = c.but(vpls=vpls, candidates=vpls * context.size["candidates_per_vpl"])
     context.pictures[view.name] = {
         "images": shown,
         "overlays": [],
-        "first": default[-1] if default else None,
+        "first": DEFAULT if DEFAULT in names else None,
         "contributions": pipeline.contributions(context.runner, view, c, 1),
     }
 
