@@ -15,8 +15,8 @@ uint64_t emitterOf(const LightSet& lights, size_t light, Vec3 towards) {
 
 bool PhotonMis::sends(size_t light, Vec3 towards) const {
   if (!lights || !(photons * lights->pickProbability(light) > 0.0f)) return false;
-  return !lamps || !lights->hittable(light) ||
-         std::ranges::binary_search(*lamps, emitterOf(*lights, light, towards));
+  return !emitters || !lights->hittable(light) ||
+         std::ranges::binary_search(*emitters, emitterOf(*lights, light, towards));
 }
 
 float PhotonMis::specularProbability(const Bsdf& vertex, float roughImportance) {

@@ -31,8 +31,9 @@ struct PhotonMis {
   // BSDF rays per area, 1/unit^2, that took the specular lobes at all vertices so far.
   float rays = 0.0f;
   float photons = 0.0f;  // number of photons from all lights
-  // Lamps (emitterOf) that emit photons, ascending; null: all do. Rays alone estimate the others.
-  const std::vector<uint64_t>* lamps = nullptr;
+  // Emitters (emitterOf) that emit photons, ascending; null: all do. Rays alone estimate the
+  // others.
+  const std::vector<uint64_t>* emitters = nullptr;
   const EmissionGuide* guide = nullptr;  // density of the photons; null: by power
   float misRatio = 0.0f;
   // The importance of rough lobes by which rays choose lobes at their first vertex (walk.h), or a
@@ -67,7 +68,7 @@ struct PhotonMis {
   float rayWeight(size_t light, Vec3 towards, float guided, float shadowRays) const;
 
  private:
-  // Whether photons carry light of the lamp.
+  // Whether photons carry light of the emitter.
   bool sends(size_t light, Vec3 towards) const;
 };
 

@@ -194,8 +194,8 @@ TEST(Caustics, EmittersWithTooFewPhotonsAreLeftToRays) {
       cameraDirection(world.scene.camera, world.scene.film, 0.5f, 0.5f), seen));
   const auto share = [&](uint64_t photons, bool left) {
     const Caustics caustics(world.accel, world.lights, {}, photons, {.ofPixel = 8.0f}, 0, 3, 0, {});
-    EXPECT_GT(caustics.stats().lamps, 0u);
-    EXPECT_EQ(caustics.stats().sparseLamps == caustics.stats().lamps, left) << photons;
+    EXPECT_GT(caustics.stats().emitters, 0u);
+    EXPECT_EQ(caustics.stats().sparseEmitters == caustics.stats().emitters, left) << photons;
     return caustics.photonMis(seen, world.scene.camera.position)
         .rayWeight(lamp, {0, 1, 0}, 1.0f, 0.0f);
   };
@@ -209,8 +209,8 @@ TEST(Caustics, IntegratorsReportTheirLamps) {
   const VplTable lit = fewVpls(world);
   for (const char* integrator : {"vpl", "guided"}) {
     const RenderResult image = renderVpls(world, lit, {{"integrator", integrator}, {"spp", "1"}});
-    EXPECT_GT(image.caustics.lamps, 0u) << integrator;
-    EXPECT_LE(image.caustics.sparseLamps, image.caustics.lamps) << integrator;
+    EXPECT_GT(image.caustics.emitters, 0u) << integrator;
+    EXPECT_LE(image.caustics.sparseEmitters, image.caustics.emitters) << integrator;
     const bool gathers = integrator == std::string_view("vpl");
     EXPECT_EQ(image.vpls > 0, gathers) << integrator;
     EXPECT_EQ(image.emissionPoints > 0, gathers) << integrator;

@@ -270,15 +270,15 @@ void reportRender(const RenderResult& result, const Values& options, Summary& su
     summary.add("useful_caustic_photons",
                 {{"by_power", caustics.useful.byPower}, {"guided", caustics.useful.guided}}, line);
   }
-  if (caustics.lamps > 0) {
-    std::snprintf(
-        line, sizeof line,
-        "caustics of %zu of %zu lights come from near-field rays alone: too few of their photons "
-        "come into view",
-        caustics.sparseLamps, caustics.lamps);
-    summary.add("lamps", caustics.lamps);
-    summary.add("lamps_without_photons", caustics.sparseLamps,
-                caustics.sparseLamps > 0 ? line : "");
+  if (caustics.emitters > 0) {
+    std::snprintf(line, sizeof line,
+                  "caustics of %zu of %zu lights and parts of the sky come from near-field rays "
+                  "alone: too few of their photons "
+                  "come into view",
+                  caustics.sparseEmitters, caustics.emitters);
+    summary.add("emitters", caustics.emitters);
+    summary.add("emitters_without_photons", caustics.sparseEmitters,
+                caustics.sparseEmitters > 0 ? line : "");
   }
   if (only == "all") warnOfDark(result);
   summary.addNonFinite(stats.nonFinite, "samples");

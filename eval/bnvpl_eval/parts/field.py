@@ -22,7 +22,7 @@ from ..tables import column, table
 from .convergence import series
 
 NONE = "none"
-DEFAULT = "tilecuts-near-field"  # of vpl-render, which a viewer shows first
+DEFAULT = "tilecuts-near-field"  # the default of vpl-render, which a viewer shows first
 EQUAL_VPLS, EQUAL_TIME = "equal VPLs", "equal time"
 MAX_SPP = 1024  # at equal time
 CLOSE_ENOUGH = 0.05  # to the time, for a number of samples that has been run

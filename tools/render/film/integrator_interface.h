@@ -10,8 +10,9 @@
 namespace bnvpl {
 
 struct CausticStats {
-  // Lamps whose caustics photons can render, and those of them with too few photons in view.
-  size_t lamps = 0, sparseLamps = 0;
+  // Lights, and regions of a sky, whose caustics photons can render, and those of them with too few
+  // photons in view.
+  size_t emitters = 0, sparseEmitters = 0;
   UsefulPhotons useful = {};  // photons that come into view
 };
 

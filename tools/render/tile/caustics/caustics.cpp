@@ -85,9 +85,9 @@ void Caustics::chooseEmitters(uint64_t key, const ProgressFn& progress) {
     const uint64_t begin = c * kChunk, end = std::min(count, begin + kChunk);
     for (uint64_t i = begin; i < end; ++i) {
       splats.list.clear();
-      const uint64_t lamp = follow(key, i, count, splats);
-      if (lamp == kNoEmitter) continue;
-      SplatMoments& found = chunks[c][lamp];
+      const uint64_t emitter = follow(key, i, count, splats);
+      if (emitter == kNoEmitter) continue;
+      SplatMoments& found = chunks[c][emitter];
       for (const Splat& splat : splats.list) {
         const double light{mean(splat.radiance)};
         found.sum += light, found.squares += light * light;
@@ -97,13 +97,13 @@ void Caustics::chooseEmitters(uint64_t key, const ProgressFn& progress) {
   });
   std::map<uint64_t, SplatMoments> all;
   for (const auto& chunk : chunks) {
-    for (const auto& [lamp, found] : chunk)
-      all[lamp].sum += found.sum, all[lamp].squares += found.squares;
+    for (const auto& [emitter, found] : chunk)
+      all[emitter].sum += found.sum, all[emitter].squares += found.squares;
   }
-  for (const auto& [lamp, found] : all)
+  for (const auto& [emitter, found] : all)
     if (found.sum * found.sum >= kMinPilotPhotons * found.squares && found.sum > 0.0)
-      dense_.push_back(lamp);
-  lamps_ = all.size();
+      dense_.push_back(emitter);
+  emitters_ = all.size();
   chosen_ = true;
 }
 
@@ -135,7 +135,7 @@ PhotonMis Caustics::sharedBy(float samplesPerArea) const {
   return {.lights = &lights_,
           .rays = rays_.ofPixel * samplesPerArea,
           .photons = static_cast<float>(photons_),
-          .lamps = chosen_ ? &dense_ : nullptr,
+          .emitters = chosen_ ? &dense_ : nullptr,
           .guide = &guide_,
           .roughImportance = rays_.roughImportance};
 }
@@ -150,13 +150,13 @@ uint64_t Caustics::follow(uint64_t key, uint64_t index, uint64_t count, Splats& 
   if (!(probability > 0.0)) return kNoEmitter;
   Photon photon{
       e, guided, lights_.emit(e.light, e.at), {}, lights_.hittable(e.light), lensPoint(rng)};
-  const uint64_t lamp =
+  const uint64_t emitter =
       photon.hittable ? emitterOf(lights_, e.light, -photon.start.direction) : kNoEmitter;
-  if (lamp == kNoEmitter ? !chosen_ : chosen_ && !std::ranges::binary_search(dense_, lamp))
-    return lamp;  // the pilot does not need it, or its light is left to rays
+  if (emitter == kNoEmitter ? !chosen_ : chosen_ && !std::ranges::binary_search(dense_, emitter))
+    return emitter;  // the pilot does not need it, or its light is left to rays
   photon.flux = photon.start.flux * static_cast<float>(1.0 / (probability * double(photons_)));
   trace(photon, rng, out);
-  return lamp;
+  return emitter;
 }
 
 float Caustics::shadowRayRatio(const Bsdf& vertex, const Photon& photon) const {

@@ -30,10 +30,11 @@ struct CompetingRays {
 // that no ray can hit are theirs alone.
 //
 // Photons start where pilot photons found ways into view (EmissionGuide). A further pilot measures
-// the noise of each lamp's photons (emitterOf: a light, or a region of a sky). With the splats r_k
-// of a lamp, (sum r_k)^2 / sum r_k^2 is the number of equal splats that would be as noisy. A lamp
-// with fewer than kMinPilotPhotons of them is left to near-field rays: for example one behind a
-// door. The photons of the image are independent of the pilots', so that it stays unbiased.
+// the noise of each emitter's photons (emitterOf: a light, or a region of a sky). With the splats
+// r_k of an emitter, (sum r_k)^2 / sum r_k^2 is the number of equal splats that would be as noisy.
+// An emitter with fewer than kMinPilotPhotons of them is left to near-field rays: for example a
+// lamp behind a door. The photons of the image are independent of the pilots', so that it stays
+// unbiased.
 //
 // No path from the camera can end at a light that no ray can hit if a perfect mirror or glass lies
 // before it. With `bounces` > 0 photons carry all of that light to directly visible surfaces: they
@@ -51,7 +52,7 @@ class Caustics {
   // Parameters of MIS with rays that leave a point that is directly visible from `origin`, the
   // origin of the camera ray.
   PhotonMis photonMis(const SurfacePoint& point, Vec3 origin) const;
-  CausticStats stats() const { return {lamps_, lamps_ - dense_.size(), useful_}; }
+  CausticStats stats() const { return {emitters_, emitters_ - dense_.size(), useful_}; }
 
  private:
   static constexpr double kMinPilotPhotons = 4.0;
@@ -105,9 +106,9 @@ class Caustics {
   CompetingRays rays_;
   unsigned bounces_;
   uint32_t width_;
-  std::vector<uint64_t> dense_;  // lamps with enough photons, ascending
-  bool chosen_ = false;          // whether the pilot is done; until then all lamps send photons
-  size_t lamps_ = 0;
+  std::vector<uint64_t> dense_;  // emitters with enough photons, ascending
+  bool chosen_ = false;          // whether the pilot is done; until then all emitters send photons
+  size_t emitters_ = 0;
   std::vector<PhotonLight> light_;
   std::vector<Vec3> groupLight_;  // by light group, pixel after pixel
   EmissionGuide guide_;
