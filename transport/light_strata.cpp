@@ -80,13 +80,13 @@ void LightStrata::groupLights(const LightSet& lights, size_t maxStrata) {
   const double part =
       total / static_cast<double>(maxStrata - std::min(maxStrata - 1, order_.size()));
   std::vector<double> weights;
+  double sum = 0.0;
   for (const uint32_t k : mortonOrder(centres)) {
     const uint32_t light = local[k];
     order_.push_back(light);
     weights.push_back(double{cells_[light].share});
     cells_[light].first = static_cast<uint32_t>(strata_.size());
-    double sum = 0.0;
-    for (const double w : weights) sum += w;
+    sum += weights.back();
     if (sum < part && order_.size() < own.size()) continue;
     const auto end = static_cast<uint32_t>(order_.size());
     strata_.push_back(
@@ -94,6 +94,7 @@ void LightStrata::groupLights(const LightSet& lights, size_t maxStrata) {
     const std::vector<float> cdf = makeCdf<float>(weights);
     cdf_.insert(cdf_.end(), cdf.begin(), cdf.end());
     weights.clear();
+    sum = 0.0;
   }
 }
 

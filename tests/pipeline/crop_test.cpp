@@ -79,7 +79,8 @@ TEST_F(Crop, ThePreviewHasThePixelsOfTheCrop) {
 
 TEST_F(Crop, WhatCannotWorkIsRefused) {
   const std::string render = scene_ + " --integrator path --spp 8 -o " + path("x.exr") + " --crop=";
-  for (const char* bad : {"1,2,3", "1,2,3,4,5", "5,0,5,9", "0,9,9,4", "-1,0,4,4", "a,b,c,d"})
+  for (const char* bad :
+       {"1,2,3", "1,2,3,4,5", "5,0,5,9", "0,9,9,4", "-1,0,4,4", "a,b,c,d", "0,0,4294967304,8"})
     fail("vpl-render", render + bad, kExitUsage, {"--crop", "such as 0,0,320,240"});
   fail("vpl-render", render + "0,0,65,48", kExitUsage, {"--crop", "64x48"});
   fail("vpl-render", render + "0,0,8,8 --passes 2", kExitUsage, {"--crop", "give --spp"});

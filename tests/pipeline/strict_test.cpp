@@ -49,6 +49,23 @@ TEST_F(Strict, VplsWithoutFluxAreAWarning) {
   EXPECT_EQ(tool("vpl-render", arguments + " --strict").code, kExitInput);
 }
 
+TEST_F(Strict, OptionsWithoutEffectInTheSceneAreNamed) {
+  makeStages(scene_);  // without near-specular surfaces
+  const std::string render = "vpl-render", arguments = scene_ + " " + path("lit.vpl") +
+                                                       " --size 8x8 --spp 1 --quiet -o " +
+                                                       path("i.exr");
+  for (const char* rays : {" --compensate none --near-field-rays 2", " --compensate near-field"}) {
+    const Outcome told = tool(render, arguments + rays);
+    EXPECT_EQ(told.code, kExitOk) << told.err;
+    EXPECT_EQ(contains(told.err, "--near-field-rays had no effect"), contains(rays, "none"))
+        << rays;
+  }
+  const Outcome adaptive =
+      tool(render, scene_ + " --size 8x8 --passes 2 --integrator light --adaptive on --quiet -o " +
+                       path("i.exr"));
+  EXPECT_TRUE(contains(adaptive.err, "--adaptive had no effect")) << adaptive.err;
+}
+
 TEST_F(Strict, NoClobberKeepsWhatExists) {
   const std::string arguments = scene_ + " -n 100 --quiet --no-clobber -o " + path("c.vpl");
   succeed("vpl-place", arguments);

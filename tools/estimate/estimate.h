@@ -33,6 +33,7 @@ struct EstimateResult {
   uint64_t paths = 0;
   UsefulPhotons useful = {};  // photons that reach a VPL, as the pilot found
   double workShare = 1.0;     // part of the requested work that was done; less than 1 if enough
+  bool photonsAlone = false;  // method `both` sent no paths
 };
 
 struct EstimateInputs {

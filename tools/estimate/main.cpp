@@ -4,16 +4,11 @@
 #include "formats/vpl/vpl_io.h"
 #include "tools/common/run/memory.h"
 #include "tools/common/stage/stage_run.h"
-#include "tools/estimate/photon_sums.h"
+#include "tools/estimate/memory_of_sums.h"
 #include "tools/estimate/report.h"
 
 namespace bnvpl {
 namespace {
-
-// Each thread has its own sums of photons: those of a VPL's flux, and its emission points.
-double bytesPerVplAndThread(const Values& options) {
-  return sizeof(VplSum) + static_cast<double>(options[kEmitPointsOption]) * sizeof(EmitPoint);
-}
 
 int runEstimate(const StageRequest& request, const fs::path& input, const ToolOptions& tool) {
   StageRun run("vpl-estimate", request, tool);
@@ -31,6 +26,10 @@ int runEstimate(const StageRequest& request, const fs::path& input, const ToolOp
   run.filesReady(scene.files);
   requireSameScene(input, vpls.sceneHash, scene, "rerun vpl-place and vpl-eliminate on this scene");
   requireRadiiWithin(input, vpls.radius, scene);
+  if (!run.predictsCost()) {
+    requireMemory(bytesOfGroups(vpls, scene) * threadsInUse(), "light groups of each VPL",
+                  "lower --threads, or keep fewer with vpl-eliminate -n");
+  }
   const Accelerator accel(scene, tool.processor);
   const LightSet lights(accel);
   const Work work = estimateWork(vpls, options);

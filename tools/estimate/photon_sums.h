@@ -33,6 +33,14 @@ class FixedPoint {
       throw std::overflow_error("flux exceeds its fixed-point range");
     return static_cast<int64_t>(std::llrint(units));
   }
+  // The same, rounded up with the probability of the fraction if u is uniform in [0, 1): photons
+  // that a guide makes faint carry a few units, and those of a cell the same few.
+  int64_t encode(double value, float u) const {
+    const double units = value * perUnit_;
+    if (!(std::fabs(units) < 0x1p62))
+      throw std::overflow_error("flux exceeds its fixed-point range");
+    return static_cast<int64_t>(std::floor(units + double{u}));
+  }
   double decode(int64_t units) const { return static_cast<double>(units) * unit_; }
 
  private:

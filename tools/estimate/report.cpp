@@ -136,6 +136,11 @@ void reportEstimate(const EstimateResult& result, Summary& summary) {
   if (result.useful.byPower > 0.0) reportEmission(result.useful, summary);
   if (!photons) summary.add("paths", result.paths, formatSi(double(result.paths)) + " paths");
   reportWork(result.workShare, summary);
+  if (result.photonsAlone) {
+    summary.add("photons_alone", true,
+                "no paths: pilots would cost too much for so many VPLs, or found no light; --paths "
+                "and --irradiance-error have no effect");
+  }
   const auto dark = static_cast<uint64_t>(
       photons ? std::ranges::count(vpls.photons, 0u)
               : std::ranges::count_if(vpls.flux, [](Vec3 f) { return !(mean(f) > 0.0f); }));

@@ -51,6 +51,7 @@ int runRender(StageRequest& request, const RenderFiles& files, const ToolOptions
     RenderResult all = result(task, previews.begin(images, options, film));
     const Values made = optionsMade(all, request.given);
     finishImage(all, made, extendProvenance(lit.provenance, record(recordOf(renderSpec(), made))));
+    warnOfIdle(all, request.given);
     reportRender(all, made, task.summary);
     addImages(task.files, images, all.image, options, task.summary);
     previews.finish(all.image, task.summary);

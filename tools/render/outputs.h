@@ -32,6 +32,8 @@ Json withLayers(Json run, const Values& options);
 // What vpl-merge needs of a shard's run besides its sums, and back.
 Json sourcesOf(const RenderResult& result);
 void takeSources(const Json& sources, RenderResult& result);
+// Warns of options that were given and had no effect in this scene.
+void warnOfIdle(const RenderResult& result, const Given& given);
 void reportRender(const RenderResult& result, const Values& options, Summary& summary);
 
 }  // namespace bnvpl

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <numbers>
 
+#include "core/memory.h"
 #include "core/number_text.h"
 #include "scene/surface_area.h"
 #include "tools/render/compensate/compensate.h"
@@ -243,7 +244,8 @@ PixelBox parseCrop(const std::string& text) {
   char rest = 0;
   const bool digits = text.find_first_not_of("0123456789,") == std::string::npos;
   if (!digits || text.size() > 24 ||
-      std::sscanf(text.c_str(), "%d,%d,%d,%d%c", &box.x0, &box.y0, &box.x1, &box.y1, &rest) != 4 ||
+      std::sscanf(text.c_str(), "%9d,%9d,%9d,%9d%c", &box.x0, &box.y0, &box.x1, &box.y1, &rest) !=
+          4 ||
       box.x0 >= box.x1 || box.y0 >= box.y1) {
     throw UsageError("--crop '" + text +
                      "' is not X0,Y0,X1,Y1 with X0 < X1 and Y0 < Y1, such as 0,0,320,240");
@@ -311,11 +313,16 @@ RenderResult render(const Accelerator& accel, const LightSet& lights, const VplT
   film.firstHits = traceFirstHits(accel, film.filter, film.layers, film.seed, options[kSppOption]);
   film.groups = lightGroupsOf(options, accel.scene());
   const Integrator integrator = makeIntegrator(accel, lights, lit, options, progress);
+  if (!budgetOf(options)) {
+    requireMemory(bytesOfHeldSamples(integrator, options[kSppOption]), "all samples of a tile",
+                  "lower --spp, or give --passes with it");
+  }
   RenderResult result;
   result.groups = film.groups;
   result.vpls = integrator.vpls;
   result.emissionPoints = integrator.emissionPoints;
   result.planned = integrator.planned;
+  result.idle = integrator.idle;
   result.caustics = integrator.caustics;
   // The reflected half is reflected again: 0.5 / (1 - 0.5) = 1.
   if (const double area = surfaceArea(accel.scene()); area > 0.0)

@@ -46,6 +46,7 @@ struct RenderResult {
   size_t vpls = 0, emissionPoints = 0;  // see Integrator
   std::vector<PlanCount> planned = {};
   CausticStats caustics = {};
+  std::vector<std::string_view> idle = {};  // options that had no effect
   std::vector<std::string> groups = {};  // light groups that the image shows
   std::optional<PassesDone> passes;  // set if there is a budget
   // Mean radiance that the power of the lights makes if it falls evenly on all surfaces and half of

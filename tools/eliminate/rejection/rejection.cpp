@@ -119,12 +119,14 @@ EliminateResult run(const EliminateInputs& in, const Values& options) {
   EliminateResult kept;
   std::vector<Vec3> position, normal;
   for (uint32_t i = 0; i < p.size(); ++i) {
-    if (double{toUnitFloat(random64(key, all.id[i], 1))} >= p[i]) continue;
+    if (toUnitDouble(random64(key, all.id[i], 1)) >= p[i]) continue;
     kept.rows.push_back(i);
     kept.weight.push_back(static_cast<float>(1.0 / p[i]));
     position.push_back(all.position[i]);
     normal.push_back(all.normal[i]);
   }
+  if (kept.rows.empty())
+    throw InputError("--method rejection kept no VPL; raise -n, or change --seed");
   RepresentedRadii radii = representedRadii(position, normal);
   kept.radius = std::move(radii.radius);
   kept.area = radii.area;

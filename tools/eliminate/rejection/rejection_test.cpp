@@ -51,6 +51,20 @@ TEST(Rejection, KeepsAboutTheCount) {
   EXPECT_NEAR(sum, 400.0, 3.0 * 20.0 / std::sqrt(8.0));  // the variance of a count is at most 400
 }
 
+TEST(Rejection, ThatKeepsNoneIsRefused) {
+  int refused = 0;
+  for (int seed = 1; seed <= 12; ++seed) {
+    try {
+      const Given one{{"count", "2"}, {"min-probability", "1e-6"}, {"seed", std::to_string(seed)}};
+      EXPECT_GT(cornell().keep(one).size(), 0u);
+    } catch (const InputError& e) {
+      EXPECT_STREQ(e.what(), "--method rejection kept no VPL; raise -n, or change --seed");
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 0);
+}
+
 // A VPL without contribution to the view is kept with probability 1/100 and 100 times its flux.
 TEST(Rejection, WeighsByOneOverTheProbability) {
   const VplTable& all = cornell().all;

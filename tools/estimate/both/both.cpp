@@ -241,11 +241,10 @@ class Estimator {
     const bool trial = in_.controls.trial != nullptr;
     const double spent = pilots.photonCost * (trial ? static_cast<double>(few) : pilots.photons) +
                          pathPilot(points, few, pilots);
-    const auto dark = [](const auto& pilot) {
-      return std::ranges::all_of(pilot, [](const auto& p) { return p.flux == 0.0; });
-    };
+    const auto dark = [](const auto& pilot) { return pilot.flux == 0.0; };
     // Nothing tells how to divide the work, as where only photons find the light.
-    if (!trial && dark(pilots.byPhotons) && dark(pilots.byPaths))
+    if (!trial && std::ranges::all_of(pilots.byPhotons, dark) &&
+        std::ranges::all_of(pilots.byPaths, dark))
       return photonsAlone(work_ - reported_);
     const WorkBudget budget{std::max(whole - spent, 0.5 * whole), irradianceError()};
     const Split split =
@@ -315,6 +314,7 @@ class Estimator {
       result.energy.nonFinite += r.nonFinite;
     }
     result.workShare = split.costShare;
+    result.photonsAlone = split.photonsAlone();
     result.useful = emission_.useful;
     VplGroups groups = photons.deposits.groupFlux(photons.sums);
     addGroupsTo(groups, paths);

@@ -2,6 +2,7 @@
 // whose fluxes are used for nothing else, so they add no bias.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -33,6 +34,10 @@ struct Split {
   std::vector<float> misRatio;
   double cost = 0.0;             // cost of photons and points, in rays
   double costShare = 1.0;        // cost over that of the budget
+
+  bool photonsAlone() const {
+    return costShare == 1.0 && std::ranges::count(points, 0u) == std::ssize(points);
+  }
 };
 
 struct WorkBudget {

@@ -41,7 +41,7 @@ struct FilmState {
   void add(const Splat& splat) {
     splats.add(splat);
     if (groupSplats.pixels() > 0)
-      groupSplats.add({splat.pixel * groups.count + splat.group, splat.radiance, 0});
+      groupSplats.add(size_t{splat.pixel} * groups.count + splat.group, splat.radiance);
   }
   void beginRound() {
     done = unitsToDo(tiles.count(), shard);

@@ -27,6 +27,7 @@ struct Integrator {
   size_t emissionPoints = 0;  // places from which these VPLs shine
   std::vector<PlanCount> planned = {};  // counts of the gather's preparations
   CausticStats caustics = {};
+  std::vector<std::string_view> idle = {};  // options that have no effect in this scene
 };
 
 }  // namespace bnvpl

@@ -12,6 +12,8 @@ namespace {
 
 constexpr size_t kMinTiles = 64, kTilesForEach = 64;    // a trial has one tile of this many
 constexpr size_t kWorthATrial = 512;                    // tiles of a film
+// A tile that learns the lights does so for itself and those around it, which share it later.
+constexpr double kLearnTogether = 9.0;
 
 // Seconds of `count` units that are tried in parallel.
 template <typename Unit>
@@ -24,18 +26,23 @@ double secondsOf(size_t count, const Unit& unit) {
 }  // namespace
 
 uint32_t sppThatFits(const Scene& scene, const Integrator& integrator, const FilmOptions& options,
-                     double passS) {
+                     double timeS, double passes) {
   const Tiles tiles(scene.film);
   if (tiles.count() < kWorthATrial) return kPassSpp;
   const SpreadOrder order(tiles.count());
   const size_t tried = std::max(kMinTiles, tiles.count() / kTilesForEach);
   const uint64_t key = streamKey(options.seed, RandomStream::PixelSamples);
-  const double tilesS = secondsOf(tried, [&](size_t k) {
-    sampleTile(scene, options.filter, integrator, key, tiles.at(order(k)),
-               {0, kPassSpp, kPassSpp, kMaxPassSpp, 0},
-               static_cast<uint32_t>(options.groups.size()), [](uint32_t, const CameraSample&) {});
-  });
-  double allS = tilesS * double(tiles.count()) / double(tried);
+  const auto trial = [&] {
+    return secondsOf(tried, [&](size_t k) {
+      sampleTile(scene, options.filter, integrator, key, tiles.at(order(k)),
+                 {0, kPassSpp, kPassSpp, kMaxPassSpp, 0},
+                 static_cast<uint32_t>(options.groups.size()),
+                 [](uint32_t, const CameraSample&) {});
+    });
+  };
+  const double firstS = trial(), tilesS = trial(), parts = double(tiles.count()) / double(tried);
+  const double learningS = std::max(0.0, firstS - tilesS) * parts / kLearnTogether;
+  double allS = tilesS * parts;
   if (integrator.tracePhotons) {
     constexpr uint64_t kChunk = 1024;
     const uint64_t all = uint64_t{kPassSpp} * scene.film.width * scene.film.height,
@@ -47,7 +54,7 @@ uint32_t sppThatFits(const Scene& scene, const Integrator& integrator, const Fil
     allS += photonsS * double(all) / double(chunks * kChunk);
   }
   uint32_t spp = kPassSpp;
-  while (spp > 1 && allS * spp / kPassSpp > passS) spp /= 2;
+  while (spp > 1 && passes * allS * spp / kPassSpp > timeS - learningS) spp /= 2;
   return spp;
 }
 

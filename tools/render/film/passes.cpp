@@ -43,7 +43,9 @@ class Passes {
     PreviewPace pace(std::min(nowS() + 1.0, startS_ + kFirstPreview * budget_.timeS));
     for (bool under = resumed; under || !ended(); under = false) {
       if (!under) chooseSlots();
+      const double earlierS = state_.at.passesS;
       makePass(progress, controls, preview, pace);
+      if (!under) lastPassS_ = state_.at.passesS - earlierS;
       closePass();
       if (progress)
         progress.tell({leftS(), state_.at.pass > 1 ? std::optional(error_) : std::nullopt});
@@ -126,10 +128,13 @@ class Passes {
   uint32_t trialPassSpp() const {
     const double leftS = budget_.timeS - (nowS() - startS_);
     if (!std::isfinite(leftS)) return kPassSpp;
-    return sppThatFits(scene_, integrator_, options_, leftS / kWantedPasses);
+    return sppThatFits(scene_, integrator_, options_, leftS, kWantedPasses);
   }
   uint64_t maxPasses() const { return std::min(budget_.passes, budget_.spp / passSpp()); }
-  double passS() const { return state_.at.passesS / double(state_.at.pass); }  // after a pass
+  // Expected time of a pass, after one: that of the last, as tiles learn the lights in the first.
+  double passS() const {
+    return lastPassS_ > 0.0 ? lastPassS_ : state_.at.passesS / double(state_.at.pass);
+  }
   // Time that the image takes once the passes are made: twice that of an image to look at, as it
   // has other layers and is written.
   double finishS() const {
@@ -275,7 +280,7 @@ class Passes {
   PassesState state_;
   std::vector<PixelPasses> known_;  // finished passes
   std::vector<double> variances_;   // relative
-  double error_ = 0.0, startS_ = 0.0;
+  double error_ = 0.0, startS_ = 0.0, lastPassS_ = 0.0;  // lastPassS_: 0: not known
   mutable double finishS_ = 0.0;
   std::string_view endedBy_;
 };

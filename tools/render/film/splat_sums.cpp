@@ -14,12 +14,12 @@ constexpr int64_t kFull = int64_t{1} << 62;
 
 }  // namespace
 
-void SplatSums::add(const Splat& splat) {
-  if (!isFinite(splat.radiance)) {
+void SplatSums::add(size_t pixel, Vec3 radiance) {
+  if (!isFinite(radiance)) {
     ++nonFinite_;
     return;
   }
-  for (int c = 0; c < 3; ++c) addTo(3 * size_t{splat.pixel} + size_t(c), splat.radiance[c]);
+  for (int c = 0; c < 3; ++c) addTo(3 * pixel + size_t(c), radiance[c]);
 }
 
 void SplatSums::addTo(size_t value, float term) {

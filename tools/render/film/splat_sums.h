@@ -19,7 +19,8 @@ class SplatSums {
   SplatSums() = default;  // has no pixels
   explicit SplatSums(size_t pixels) : values_(3 * pixels), limbs_(kLimbs * values_) {}
 
-  void add(const Splat& splat);  // only counts a splat that is not finite
+  void add(const Splat& splat) { add(splat.pixel, splat.radiance); }
+  void add(size_t pixel, Vec3 radiance);  // only counts a splat that is not finite
   // Sum of channel `c` of a pixel.
   double sum(size_t pixel, size_t c) const;
   size_t pixels() const { return values_ / 3; }

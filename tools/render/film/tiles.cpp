@@ -1,5 +1,7 @@
 #include "tools/render/film/tiles.h"
 
+#include <tbb/global_control.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -46,6 +48,14 @@ size_t Tiles::pixelsMeeting(const std::optional<PixelBox>& box) const {
   size_t pixels = 0;
   for (size_t t = 0; t < count(); ++t) pixels += meets(t, box) ? at(t).pixels() : 0;
   return pixels;
+}
+
+double bytesOfHeldSamples(const Integrator& integrator, uint64_t spp) {
+  if (!integrator.wholePixels) return 0.0;
+  constexpr double kBytesPerSample = 1640;  // measured with the gather multidimensional
+  const size_t threads =
+      tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  return kBytesPerSample * double(kTileSide * kTileSide * threads) * double(spp);
 }
 
 bool addSample(const RadianceSample& r, PixelSums& pixel, PixelCounts& counts) {

@@ -49,6 +49,22 @@ TEST(NearField, RestoresClampedAndUncoveredLight) {
   }
 }
 
+// In a closed room of albedo a = 0.9, indirect light is a² / (1 - a) times the emission, and a
+// fifth of it has come over more than 16 surfaces. Where no VPL is, rays carry it all.
+TEST(NearField, LongPathsKeepTheirLight) {
+  Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "furnace/scene.toml");
+  for (Material& m : scene.materials) {
+    m = lambert(Vec3(0.9f));
+    m.emission = Vec3(1.0f);
+  }
+  scene.film = {24, 24};
+  const World world(std::move(scene));
+  VplTable dot = keptVpls(world, {{"count", "1"}}, {{"count", "100"}});
+  dot.radius[0] = 1e-4f;
+  const VplTable lit = lightVpls(world, dot, {{"method", "guarded"}, {"photons", "1"}}).table;
+  EXPECT_NEAR(indirectByVpls(world, lit, {{"compensate", "near-field"}, {"spp", "64"}}), 8.1, 0.16);
+}
+
 // A room lit from below slats close above its floor. VPLs of the floor lie between or under slats,
 // and represent a surface that is brightest where it is most occluded.
 Scene slattedRoom() {

@@ -20,6 +20,7 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   if (photons) {
     const auto tracer =
         std::make_shared<const LightTracer>(in.accel, in.lights, in.filter, maxBounces, in.seed);
+    result.idle = {"adaptive"};  // photons cannot be aimed at tiles
     result.tracePhotons = [tracer](uint64_t begin, uint64_t end, Splats& out) {
       tracer->follow(begin, end, out);
     };

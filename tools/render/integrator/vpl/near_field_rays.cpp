@@ -11,7 +11,9 @@ namespace {
 
 // Maximal number of segments of a path. The path goes on only with the probability of the uncovered
 // share.
-constexpr unsigned kMaxSegments = 16;
+// From kSureSegments on, a path is absorbed as often as the surface absorbs light (Russian
+// roulette). kMaxSegments only ends what would never end.
+constexpr unsigned kSureSegments = 16, kMaxSegments = 256;
 // Number of VPLs sampled at a vertex: few, and fewer at later vertices, whose noise matters less
 // (measured).
 constexpr unsigned kFirstDraws = 8, kLaterDraws = 2;
@@ -236,6 +238,11 @@ bool NearFieldRays::extend(Path& path, const Bsdf& bsdf) const {
       !sampleNextRay(accel_, bsdf, LobeGroup::Rough, TransportMode::Radiance, path.rng, sample,
                      next)) {
     return false;
+  }
+  if (path.segments >= kSureSegments) {
+    const float survival = std::min(1.0f, maxComponent(sample.weight));
+    if (!(path.rng.next() < survival)) return false;
+    sample.weight *= 1.0f / survival;
   }
   ++path.out.continued;
   path.throughput *= sample.weight;

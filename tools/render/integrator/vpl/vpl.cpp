@@ -161,6 +161,8 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   tile.caustics = makeCaustics(in, tile, causticPhotons(in, options), preparedSpp(options),
                                /*bounces=*/0);  // VPLs carry the light of further bounces
   const CausticStats caustics = tile.caustics ? tile.caustics->stats() : CausticStats{};
+  std::vector<std::string_view> idle;
+  if (indirect && tile.raysEach == 0) idle = {kNearFieldRaysOption.name, kReuseKey.name};
   parts->integrator =
       std::make_unique<const TileIntegrator>(in.accel, in.lights, std::move(tile), in.only);
   parts->allocation = allocationOf(in, options, *parts->integrator);
@@ -172,7 +174,8 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
           .vpls = parts->vpls.vplCount,
           .emissionPoints = parts->vpls.size(),
           .planned = std::move(gather.planned),
-          .caustics = caustics};
+          .caustics = caustics,
+          .idle = std::move(idle)};
 }
 
 }  // namespace
