@@ -185,7 +185,9 @@ void depositToOneInSight(const PhotonDeposits& deposits, const PhotonHit& hit, R
 }
 
 PhotonDeposits::PhotonDeposits(const EstimateInputs& in, float radius, uint64_t photons)
-    : radius_(radius),
+    : position_(in.vpls.position),
+      vplRadius_(in.vpls.radius),
+      radius_(radius),
       groups_(in.accel.scene().lightGroupCount()),
       photonPower_(double{mean(in.lights.totalPower())} / static_cast<double>(photons)),
       fixed_(photonPower_, photons),
@@ -207,7 +209,9 @@ void PhotonDeposits::deposit(uint32_t vpl, const PhotonHit& hit, Vec3 flux,
                              PhotonSums& sums) const {
   if (!misRatios_.empty() && !hit.onlyPhotons)
     flux *= hit.density / (hit.density + misRatios_[vpl]);
-  const float u = toUnitFloat(mix64(positionHash(hit.point.position)));
+  // Relative to the VPL, so that the unit of length does not matter.
+  const Vec3 place = (hit.point.position - position_[vpl]) / vplRadius_[vpl];
+  const float u = toUnitFloat(mix64(positionHash(place)));
   VplSum& s = sums.vpl[vpl];
   GroupSum* group = groups_ > 0 ? &sums.groups[size_t{vpl} * groups_ + hit.group] : nullptr;
   for (size_t c = 0; c < 3; ++c) {
