@@ -77,7 +77,7 @@ class PhotonDeposits {
     return static_cast<double>(units) * squareUnit_ * photonPower_ * photonPower_;
   }
 
-  std::span<const Vec3> position_;  // of VPLs
+  std::span<const Vec3> position_;  // VPLs
   std::span<const float> vplRadius_;
   float radius_;
   uint32_t groups_;
