@@ -1,5 +1,6 @@
 """Tests how the part that compares gathers chooses its numbers of samples."""
 
+import math
 import sys
 import unittest
 from pathlib import Path
@@ -34,7 +35,7 @@ class FittingSamples(unittest.TestCase):
 
     def test_samples_that_become_cheaper_fill_the_time(self) -> None:
         def cpu_s(spp: int) -> float:
-            return 1.5 + 0.4 * float(spp) ** 0.7
+            return 1.5 + 0.4 * math.pow(spp, 0.7)
 
         self.assertAlmostEqual(cpu_s(field.fitting_spp(cpu_s, 2, 12.0)), 12.0, delta=0.6)
 
