@@ -155,8 +155,8 @@ void AllNeighbours::nearest(uint32_t point, size_t count, Query& query,
     search.worst = bound;
     searchFrom(leaf_[point], search);
   }
-  if (query.keys.size() > count) search.cut();
   std::sort(query.keys.begin(), query.keys.end());
+  query.keys.resize(count);
   for (const uint64_t key : query.keys)
     found.push_back({Search::distanceSquared(key), static_cast<uint32_t>(key)});
   query.lastPoint = point;
