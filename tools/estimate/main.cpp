@@ -27,7 +27,7 @@ int runEstimate(const StageRequest& request, const fs::path& input, const ToolOp
   requireSameScene(input, vpls.sceneHash, scene, "rerun vpl-place and vpl-eliminate on this scene");
   requireRadiiWithin(input, vpls.radius, scene);
   if (!run.predictsCost()) {
-    requireMemory(bytesOfGroups(vpls, scene) * threadsInUse(), "light groups of each VPL",
+    requireMemory(bytesOfGroups(vpls, scene, options) * threadsInUse(), "light groups of each VPL",
                   "lower --threads, or keep fewer with vpl-eliminate -n");
   }
   const Accelerator accel(scene, tool.processor);

@@ -27,23 +27,22 @@ class FixedPoint {
       : unit_(std::ldexp(1.0, std::ilogb(photonPower) -
                                   std::min(26, 55 - static_cast<int>(std::bit_width(photons))))),
         perUnit_(1.0 / unit_) {}
-  int64_t encode(double value) const {
-    const double units = value * perUnit_;
-    if (!(std::fabs(units) < 0x1p62))
-      throw std::overflow_error("flux exceeds its fixed-point range");
-    return static_cast<int64_t>(std::llrint(units));
-  }
+  int64_t encode(double value) const { return static_cast<int64_t>(std::llrint(unitsOf(value))); }
   // The same, rounded up with the probability of the fraction if u is uniform in [0, 1): photons
   // that a guide makes faint carry a few units, and those of a cell the same few.
   int64_t encode(double value, float u) const {
-    const double units = value * perUnit_;
-    if (!(std::fabs(units) < 0x1p62))
-      throw std::overflow_error("flux exceeds its fixed-point range");
-    return static_cast<int64_t>(std::floor(units + double{u}));
+    return static_cast<int64_t>(std::floor(unitsOf(value) + double{u}));
   }
   double decode(int64_t units) const { return static_cast<double>(units) * unit_; }
 
  private:
+  double unitsOf(double value) const {
+    const double units = value * perUnit_;
+    if (!(std::fabs(units) < 0x1p62))
+      throw std::overflow_error("flux exceeds its fixed-point range");
+    return units;
+  }
+
   double unit_, perUnit_;  // powers of two, so scaling is exact
 };
 

@@ -24,15 +24,15 @@ int runPlace(const Request& request, const ToolOptions& tool) {
   StageRun run("vpl-place", request, tool);
   const Values options = resolve(placeSpec(), request.given);
   const uint64_t count = options[kPlaceCountOption];
-  const double rowBytes = (request.shard ? 0.0 : kBytesPerPlaced) * static_cast<double>(count);
-  const double savedBytes =
-      request.checkpoint.file.empty() ? 0.0 : kBytesPerSaved * static_cast<double>(count);
+  const double saved = request.checkpoint.file.empty() ? 0.0 : kBytesPerSaved;
+  const double rowBytes =
+      request.shard ? 0.0 : (kBytesPerPlaced + saved) * static_cast<double>(count);
   run.used.reads("scene", request.scene.file);
   const PlaceMethod& method = placeMethod(options);
   run.used.writes("-o", request.output, {request.shard ? OutputKind::Shard : kindOf(method.makes)});
   run.checkFiles();
   if (!run.predictsCost())
-    requireMemory(rowBytes + savedBytes, std::to_string(count) + " VPLs", "ask for fewer with -n");
+    requireMemory(rowBytes, std::to_string(count) + " VPLs", "ask for fewer with -n");
   Scene scene = loadSceneFor(request.scene, Warnings::Hold);
   const PlaceViews views = placeViews(request.scene, request.viewShares, method, scene);
   if (method.needsLight || !scene.isToml()) scene.requireLight();

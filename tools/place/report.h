@@ -6,8 +6,8 @@
 
 namespace bnvpl {
 
-inline constexpr double kBytesPerPlaced = 40;  // per VPL; a lower bound; measured: 42
-inline constexpr double kBytesPerSaved = 76;   // the same beside it, in the state of a checkpoint
+// Bytes per VPL: a lower bound (measured: 42), and what a checkpoint's records take besides.
+inline constexpr double kBytesPerPlaced = 40, kBytesPerSaved = 76;
 
 void reportPlaced(const PlaceResult& placed, Summary& summary);
 

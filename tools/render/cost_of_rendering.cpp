@@ -80,7 +80,7 @@ Cost costOfRendering(const Accelerator& accel, const LightSet& lights, const Vpl
   cost.memoryBytes += (cost.memoryBytes - memory.before()) * (pixels / fewPixels - 1.0);
   cost.memoryBytes += pixels * (60.0 + (redistributesFireflies(plain) ? 170.0 : 0.0) +
                                 (budgetOf(options) ? 100.0 : 0.0) + 24.0 * groups);
-  cost.memoryBytes += bytesOfHeldSamples(integrator, spp - tried);
+  cost.memoryBytes += bytesOfHeldSamples(integrator, film, spp - tried);
   return cost;
 }
 

@@ -57,9 +57,7 @@ void requireConsistent(const Values& options, const Given& given, const RenderFi
     throw UsageError("--png is of a whole image; leave it out and give it to vpl-merge");
   if (inShards && !files.viewer.empty())
     throw UsageError("--preview is of a whole image; leave it or --shard out");
-  const bool exposure =
-      std::ranges::any_of(given, [](const auto& g) { return g.first == "exposure"; });
-  if (exposure && files.png.empty())
+  if (textGiven(given, kExposureOption.name) && files.png.empty())
     throw UsageError("--exposure has no effect without --png; it is the preview's");
   if (integrator.needsVpls && files.lit.empty())
     throw UsageError("needs the lit VPLs (from vpl-estimate), or " + withoutVpls());

@@ -244,7 +244,7 @@ void reportGathered(const RenderResult& result, const Values& options, Summary& 
 
 void warnOfIdle(const RenderResult& result, const Given& given) {
   for (const std::string_view name : result.idle) {
-    if (std::ranges::any_of(given, [&](const auto& option) { return option.first == name; }))
+    if (textGiven(given, name))
       warnOfResult("--" + std::string(name) + " had no effect in this scene; leave it out");
   }
 }
@@ -281,8 +281,7 @@ void reportRender(const RenderResult& result, const Values& options, Summary& su
   if (caustics.emitters > 0) {
     std::snprintf(line, sizeof line,
                   "caustics of %zu of %zu lights and parts of the sky come from near-field rays "
-                  "alone: too few of their photons "
-                  "come into view",
+                  "alone: too few of their photons come into view",
                   caustics.sparseEmitters, caustics.emitters);
     summary.add("emitters", caustics.emitters);
     summary.add("emitters_without_photons", caustics.sparseEmitters,

@@ -63,13 +63,6 @@ bool sendsPhotons(const Values& options) {
   return integratorOf(options).tracesPhotons && onlyOf(options) != Only::Direct;
 }
 
-// The last text given for an option; null if there is none.
-const std::string* textGiven(const Given& given, std::string_view name) {
-  const auto last = std::find_if(given.rbegin(), given.rend(),
-                                 [&](const auto& option) { return option.first == name; });
-  return last == given.rend() ? nullptr : &last->second;
-}
-
 // The options that --for-denoiser stands for, spelled out.
 Given withDenoiserOptions(const Given& given) {
   const Values options = resolve(renderSpec(), given);
@@ -314,8 +307,8 @@ RenderResult render(const Accelerator& accel, const LightSet& lights, const VplT
   film.groups = lightGroupsOf(options, accel.scene());
   const Integrator integrator = makeIntegrator(accel, lights, lit, options, progress);
   if (!budgetOf(options)) {
-    requireMemory(bytesOfHeldSamples(integrator, options[kSppOption]), "all samples of a tile",
-                  "lower --spp, or give --passes with it");
+    requireMemory(bytesOfHeldSamples(integrator, accel.scene().film, options[kSppOption]),
+                  "all samples of a tile", "lower --spp, or give --passes with it");
   }
   RenderResult result;
   result.groups = film.groups;

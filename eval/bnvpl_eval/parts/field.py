@@ -22,7 +22,7 @@ from ..tables import column, table
 from .convergence import series
 
 NONE = "none"
-DEFAULT = "tilecuts-near-field"  # the default of vpl-render, which a viewer shows first
+DEFAULTS = ("tilecuts-near-field", "tilecuts-none")  # the first that is there is shown first
 EQUAL_VPLS, EQUAL_TIME = "equal VPLs", "equal time"
 MAX_SPP = 1024  # at equal time
 CLOSE_ENOUGH = 0.05  # to the time, for a number of samples that has been run
@@ -254,7 +254,7 @@ def add_pictures(context: Context, view: View, rows: list[dict[str, Any]]) -> No
     context.pictures[view.name] = {
         "images": shown,
         "overlays": [],
-        "first": DEFAULT if DEFAULT in names else None,
+        "first": next((name for name in DEFAULTS if name in names), None),
         "contributions": pipeline.contributions(context.runner, view, c, 1),
     }
 

@@ -12,8 +12,8 @@ using Json = nlohmann::ordered_json;
 // be UTF-8: U+FFFD replaces invalid bytes, and no text makes this throw.
 std::string jsonText(const Json& json, int indent = -1);
 
-// The JSON of a text; is_discarded() if the text is none. It takes seconds in every source that
-// calls the parser itself.
+// The JSON of a text; is_discarded() if the text is none. The parser takes seconds to compile in
+// each source that instantiates it.
 Json parseJson(const std::string& text);
 
 // A copy with escapedLine() applied to every string and key, for reports to people, which lay out

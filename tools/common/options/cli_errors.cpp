@@ -96,7 +96,8 @@ std::string describeAny(const CLI::ParseError& error, const CLI::App& cli) {
   if (text == "A subcommand is required") return describeCommand(cli, words);
   if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr && !words.empty())
     return describeExtras(words);
-  if (const auto found = splitAt(text, ": At Most "))
+  if (const auto found = splitAt(text, ": At Most ");
+      found && found->after.find(" required but received ") != std::string::npos)
     return found->before + " is given more than once; leave all but one out";
   if (const auto found = splitAt(text, " required "); found && found->after.ends_with(" missing"))
     return found->before.substr(0, found->before.rfind(": ")) +

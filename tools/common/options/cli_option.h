@@ -1,6 +1,6 @@
 // A tool's command line, and options on it outside the table of a stage.
 //
-// CLI11's own header takes ten seconds to compile, so that the mains of the stages do without it.
+// CLI11 takes ten seconds to compile in each source that uses it, so the stages' mains call these.
 #pragma once
 
 #include <functional>

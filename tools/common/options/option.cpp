@@ -153,6 +153,12 @@ std::string needText(const Needs& needs) {
   return text;
 }
 
+const std::string* textGiven(const Given& given, std::string_view name) {
+  const auto last = std::find_if(given.rbegin(), given.rend(),
+                                 [&](const auto& option) { return option.first == name; });
+  return last == given.rend() ? nullptr : &last->second;
+}
+
 Values resolve(const StageSpec& spec, const Given& given) {
   // Slots may need options of the stage or of methods chosen before. `known` therefore holds the
   // stage's options from the start, and those of each method once it is chosen.

@@ -254,6 +254,8 @@ struct StageSpec {
 
 // The given options as typed: name without dashes, and text.
 using Given = std::vector<std::pair<std::string, std::string>>;
+// The last text given for an option; null if there is none.
+const std::string* textGiven(const Given& given, std::string_view name);
 
 // The values of a run: those that were given, and the defaults of all other options that have an
 // effect. Throws UsageError for an unknown method or option, a value out of range, a missing

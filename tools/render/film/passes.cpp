@@ -280,7 +280,8 @@ class Passes {
   PassesState state_;
   std::vector<PixelPasses> known_;  // finished passes
   std::vector<double> variances_;   // relative
-  double error_ = 0.0, startS_ = 0.0, lastPassS_ = 0.0;  // lastPassS_: 0: not known
+  double error_ = 0.0, startS_ = 0.0;
+  double lastPassS_ = 0.0;  // 0: not known
   mutable double finishS_ = 0.0;
   std::string_view endedBy_;
 };

@@ -50,12 +50,13 @@ size_t Tiles::pixelsMeeting(const std::optional<PixelBox>& box) const {
   return pixels;
 }
 
-double bytesOfHeldSamples(const Integrator& integrator, uint64_t spp) {
+double bytesOfHeldSamples(const Integrator& integrator, const Film& film, uint64_t spp) {
   if (!integrator.wholePixels) return 0.0;
   constexpr double kBytesPerSample = 1640;  // measured with the gather multidimensional
   const size_t threads =
       tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
-  return kBytesPerSample * double(kTileSide * kTileSide * threads) * double(spp);
+  const size_t tiles = std::min(threads, Tiles(film).count());
+  return kBytesPerSample * double(kTileSide * kTileSide * tiles) * double(spp);
 }
 
 bool addSample(const RadianceSample& r, PixelSums& pixel, PixelCounts& counts) {

@@ -66,9 +66,9 @@ void sampleTile(const Scene& scene, const PixelFilter& filter, const Integrator&
                 uint64_t key, const Tile& tile, const SampleRange& range, uint32_t groups,
                 const Take& take);
 
-// Memory of all threads' tiles if an integrator wants all of a pixel's samples at once
-// (wholePixels), else 0: camera samples, paths and BSDFs.
-double bytesOfHeldSamples(const Integrator& integrator, uint64_t spp);
+// Memory of the tiles that threads render at once if an integrator wants all of a pixel's samples
+// together (wholePixels), else 0: camera samples, paths and BSDFs.
+double bytesOfHeldSamples(const Integrator& integrator, const Film& film, uint64_t spp);
 
 // Adds a sample to the sums of its pixel. A sample that is not finite counts as zero. Returns
 // whether the sample is finite.

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "core/cdf.h"
+#include "core/memory.h"
 #include "core/parallel.h"
 #include "core/random_streams.h"
 #include "spatial/packed_disks.h"
@@ -22,6 +23,8 @@ constexpr uint32_t kFiner = 2;
 constexpr float kSmooth = 2.5f;
 // Points of a VPL's region from which its rays start.
 constexpr uint32_t kOrigins = 8;
+// A ray's result, and its share of two tables of kFiner² cells a stratum, one made of the other.
+constexpr double kBytesPerRay = 40.0;
 // Lower bound of the albedo. Incident light that is inferred from darker VPLs is mostly noise.
 constexpr float kMinAlbedo = 0.01f;
 
@@ -42,12 +45,14 @@ Guide::Guide(const VplTable& lit, const Accelerator& accel, const LightSet& ligh
       strata_{sideOf(raysEach)},
       grid_{kFiner * strata_.side} {
   if (lit.size() == 0 || strata_.side == 0) return;
+  const uint32_t each = strata_.cells();
+  requireMemory(kBytesPerRay * double(lit.size()) * double(each), "what guides learn",
+                "lower --guide-rays, or keep fewer VPLs with vpl-eliminate -n");
   const NearSurfaces near(position_, normal_, lit.radius, kSmooth);
   findRadiance(lit, near);
   regions_ = RegionGrid(position_, normal_, lit.radius);
   const ProgressFn::Phase phase = progress.beginPhase("guiding distributions", lit.size());
   const uint64_t key = streamKey(seed, RandomStream::Guide);
-  const uint32_t each = strata_.cells();
   std::vector<Learnt> learnt(lit.size() * each);
   parallelFor(lit.size(), 16, [&](size_t i) {
     learn(accel, lights, key, static_cast<uint32_t>(i), lit.radius[i],

@@ -17,9 +17,6 @@ namespace bnvpl {
 // Immutable and thread-safe. Owns its data.
 class Guide : public DirectionGuide {
  public:
-  // Memory of a ray that learns, while distributions are made of them all.
-  static constexpr double kBytesPerRay = 40.0;
-
   // `raysEach`: rays traced from each VPL. The guide is empty if they are too few or there are no
   // VPLs.
   Guide(const VplTable& lit, const Accelerator& accel, const LightSet& lights, uint64_t seed,

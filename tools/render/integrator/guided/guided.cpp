@@ -2,7 +2,6 @@
 #include <array>
 #include <memory>
 
-#include "core/memory.h"
 #include "core/random_streams.h"
 #include "tools/render/integrator/guided/guided_rays.h"
 #include "tools/render/integrator/path_tracer.h"
@@ -81,11 +80,6 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
     tile.raysEach = static_cast<unsigned>(options[kPathsOption]);
     const uint64_t each = raysEach(in, options),
                    few = unitsToTry(in.trial, each, std::max<uint64_t>(64, kProbeRays / vpls));
-    if (!in.trial) {
-      requireMemory(Guide::kBytesPerRay * static_cast<double>(vpls * each),
-                    "guiding distributions of " + std::to_string(vpls) + " VPLs",
-                    "lower --guide-rays, or keep fewer VPLs");
-    }
     const CostTrial::Part part(in.trial, static_cast<double>(std::max<uint64_t>(1, each)) /
                                              static_cast<double>(std::max<uint64_t>(1, few)));
     tile.rays = std::make_unique<const GuidedRays>(
