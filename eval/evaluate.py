@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from bnvpl_eval import output, settings
+from bnvpl_eval.ahead import run_ahead
 from bnvpl_eval.context import Context
 from bnvpl_eval.runner import Runner
 
@@ -115,6 +116,9 @@ def arguments_of() -> argparse.Namespace:
     parser.add_argument(
         "--commit", help="of the tools in --bin; that of the working tree unless given"
     )
+    parser.add_argument(
+        "--jobs", type=int, default=1, help="scenes at a time, each on one processor; default 1"
+    )
     parser.add_argument("--quiet", action="store_true")
     return parser.parse_args()
 
@@ -158,11 +162,12 @@ def main() -> int:
         raise SystemExit(f"eval: none of the scenes '{','.join(wanted)}' is there")
     folder = (arguments.output or settings.ROOT / "build/eval" / arguments.size).resolve()
     output.check(folder)
+    ahead = arguments.jobs > 1 and len(chosen) > 1
     # The state at the beginning counts, as the working tree may have changed hours later.
     begin = {
         "commit": arguments.commit or commit(),
         "processor": processor(),
-        "threads": len(os.sched_getaffinity(0)),
+        "threads": 1 if ahead else len(os.sched_getaffinity(0)),
         "date": datetime.date.today().isoformat(),
     }
     runner = Runner(arguments.bin.resolve(), arguments.cache.resolve(), arguments.quiet, begin)
@@ -172,6 +177,8 @@ def main() -> int:
     context = Context(arguments.size, size, table, chosen, runner)
     if set(parts) - JUDGE_NOTHING:
         context.require_references()
+    if ahead:
+        run_ahead(Path(__file__), arguments, [scene.id for scene in chosen])
     for module in modules:
         module.run(context)
     report = output.write_all(context, folder, provenance(arguments.size, runner))

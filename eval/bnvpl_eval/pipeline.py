@@ -168,10 +168,13 @@ def image(runner: Runner, view: View, c: Configuration, seed: int) -> tuple[Path
     return run["image.exr"], runs + [run]
 
 
-def contributions(runner: Runner, view: View, c: Configuration, seed: int) -> Path:
-    """The VPLs of the image that light each pixel most."""
+def contributions(
+    runner: Runner, view: View, c: Configuration, seed: int, film: str = ""
+) -> Path:
+    """The VPLs of the image that light each pixel most, on a film of 80 pixels unless given."""
     vpls, _ = lit(runner, view, c, seed)
     words = ["contributions", "{lit}", "--scene", "{scene}", "-o", "@contributions.json", "--quiet"]
+    words += ["--size", film] if film else []
     inputs = {"lit": vpls, "scene": ROOT / view.file}
     return runner.run("vpl-inspect", words, inputs, ["contributions.json"])["contributions.json"]
 

@@ -32,8 +32,8 @@ def path(view: View, film: str, half: str) -> Path:
 
 
 def spp_of(view: View, width: int) -> int:
-    """Samples a pixel of a half: fewer on a larger film, whose pixels are more."""
-    return math.ceil(view.reference_spp * SMALL_WIDTH / max(width, SMALL_WIDTH))
+    """Samples a pixel of a half: as many in all on a larger film, whose pixels are more."""
+    return math.ceil(view.reference_spp * (SMALL_WIDTH / max(width, SMALL_WIDTH)) ** 2)
 
 
 def render_half(runner: Runner, view: View, film: str, spp: int, half: str) -> None:

@@ -25,9 +25,11 @@ NONE = "none"
 DEFAULTS = ("tilecuts-near-field", "tilecuts-none")  # the first that is there is shown first
 EQUAL_VPLS, EQUAL_TIME = "equal VPLs", "equal time"
 MAX_SPP = 1024  # at equal time
-CLOSE_ENOUGH = 0.05  # to the time, for a number of samples that has been run
+CLOSE_ENOUGH = 0.1  # to the time, for a number of samples that has been run
+SECOND_TRIAL = 0.25  # of the time
 TOO_LONG = 1.25  # times the time, for a run of fewer samples than a first trial has
 MAX_TRIALS = 4
+CONTRIBUTIONS_WIDTH = 40  # pixels; each samples all VPLs
 REFUSED = 2  # exit code of vpl-render
 LAYERS = ("", "indirect")
 SHAPES = (
@@ -187,7 +189,8 @@ def fitting_spp(cpu_s: Callable[[int], float], few: int, time_s: float) -> int:
     """Samples a pixel whose run takes `time_s` CPU seconds; 0 if the run of one sample is too long.
 
     Preparations take most of the time of a few samples, and further samples may cost less than the
-    first. So lines through two trials lead to the number, which is tried itself.
+    first. So lines through two trials lead to the number, which is tried itself. The first line
+    is of short trials, since those are run besides the images that count.
     """
     few_s = max(cpu_s(few), 1e-3)
     if few_s > time_s:
@@ -196,7 +199,7 @@ def fitting_spp(cpu_s: Callable[[int], float], few: int, time_s: float) -> int:
             spp -= 1
         return spp
     before = (few, few_s)
-    spp = min(max(math.floor(few * time_s / few_s), 2 * few), MAX_SPP)
+    spp = min(max(math.floor(SECOND_TRIAL * few * time_s / few_s), 2 * few), MAX_SPP)
     for _ in range(MAX_TRIALS):
         trial = (spp, cpu_s(spp))
         if abs(trial[1] - time_s) < CLOSE_ENOUGH * time_s:
@@ -255,7 +258,9 @@ def add_pictures(context: Context, view: View, rows: list[dict[str, Any]]) -> No
         "images": shown,
         "overlays": [],
         "first": next((name for name in DEFAULTS if name in names), None),
-        "contributions": pipeline.contributions(context.runner, view, c, 1),
+        "contributions": pipeline.contributions(
+            context.runner, view, c, 1, view.scene.film(CONTRIBUTIONS_WIDTH)
+        ),
     }
 
 
