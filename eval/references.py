@@ -30,7 +30,7 @@ def main() -> int:
             continue
         film = view.scene.film(arguments.film_width)
         for half in "ab":
-            spp = arguments.spp or references.spp_of(view, arguments.film_width)
+            spp = arguments.spp or references.spp_of(view, film)
             references.render_half(runner, view, film, spp, half)
         references.require(view, film)
         halves = references.load(view, film, "indirect")

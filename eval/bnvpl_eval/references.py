@@ -31,9 +31,17 @@ def path(view: View, film: str, half: str) -> Path:
     return FOLDER / f"{view.name}-{film}-{half}.exr"
 
 
-def spp_of(view: View, width: int) -> int:
-    """Samples a pixel of a half: as many in all on a larger film, whose pixels are more."""
-    return math.ceil(view.reference_spp * (SMALL_WIDTH / max(width, SMALL_WIDTH)) ** 2)
+def integrator_of(view: View, film: str) -> str:
+    """The integrator of a reference: guided paths on large films, where plain ones take hours."""
+    large = int(film.split("x")[0]) > SMALL_WIDTH
+    return "guided" if large and view.reference_integrator == "path" else view.reference_integrator
+
+
+def spp_of(view: View, film: str) -> int:
+    """Samples a pixel of a half: as many in all on a large film; a quarter where they are guided."""
+    width = max(int(film.split("x")[0]), SMALL_WIDTH)
+    share = 0.25 if integrator_of(view, film) == "guided" else 1.0
+    return math.ceil(share * view.reference_spp * (SMALL_WIDTH / width) ** 2)
 
 
 def render_half(runner: Runner, view: View, film: str, spp: int, half: str) -> None:
@@ -65,14 +73,14 @@ def render_half(runner: Runner, view: View, film: str, spp: int, half: str) -> N
             )
     total = done + chunk * len(seeds)
     note = (
-        f"bnvpl {view.reference_integrator} tracer, {view.file}, {film}, {total} spp, half {half}"
+        f"bnvpl {integrator_of(view, film)}, {view.file}, {film}, {total} spp, half {half}"
     )
     images.write_half(target, {layer: sum_ / total for layer, sum_ in sums.items()}, note)
     record = {
         "key": reference_key(view, film, total, half),
         "scene": view.file,
         "film": film,
-        "integrator": view.reference_integrator,
+        "integrator": integrator_of(view, film),
         "spp": total,
         "half": half,
         "seeds": [stored["seeds"][0] if stored else first_seed, seeds[-1]],
@@ -91,7 +99,7 @@ def _render_chunk(runner: Runner, view: View, film: str, spp: int, seed: int) ->
             "--size",
             film,
             "--integrator",
-            view.reference_integrator,
+            integrator_of(view, film),
             "--spp",
             spp,
             "--seed",
@@ -119,8 +127,8 @@ def _stored(view: View, film: str, half: str) -> dict[str, Any] | None:
 def reference_key(view: View, film: str, spp: int, half: str) -> str:
     """Key of a reference. It names the integrator only where that is not the path tracer."""
     what = [scene_key(ROOT / view.file), film, spp, half]
-    if view.reference_integrator != "path":
-        what.append(view.reference_integrator)
+    if integrator_of(view, film) != "path":
+        what.append(integrator_of(view, film))
     return digest(json.dumps(what).encode())
 
 

@@ -74,10 +74,15 @@ class References(unittest.TestCase):
         )
 
     def test_larger_films_take_fewer_samples_a_pixel(self) -> None:
-        view = dataclasses.replace(self.view, reference_spp=4096)
-        self.assertEqual(
-            [references.spp_of(view, width) for width in (40, 80, 240)], [4096, 4096, 456]
-        )
+        films = ("40x30", "80x60", "240x180")
+        for integrator, last in (("path", ("guided", 114)), ("light", ("light", 456))):
+            view = dataclasses.replace(
+                self.view, reference_spp=4096, reference_integrator=integrator
+            )
+            self.assertEqual(
+                [(references.integrator_of(view, f), references.spp_of(view, f)) for f in films],
+                [(integrator, 4096), (integrator, 4096), last],
+            )
 
     def test_a_half_has_chunks_of_equal_size(self) -> None:
         self.render(self.view, 2 * references.CHUNK + 1)

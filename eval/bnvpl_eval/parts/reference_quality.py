@@ -11,13 +11,15 @@ from ..statistics import relative_weight
 from ..tables import column, table
 
 COLUMNS = [
-    column("integrator", "traced from the"),
+    column("integrator", "traced from"),
     column("spp", "samples or photons a pixel, both halves"),
     column("half_difference", "RMS difference of the halves / mean"),
     column("own_relmse", "relMSE of their mean"),
     column("judged", "lowest relMSE that is judged by it"),
     column("ratio", "judged / own", better="high"),
 ]
+
+FROM = {"path": "the camera", "guided": "the camera, guided", "light": "the lights"}
 
 
 def own_relmse(halves: tuple[npt.NDArray[Any], npt.NDArray[Any]]) -> float:
@@ -40,7 +42,7 @@ def run(context: Context) -> None:
         rows.append(
             {
                 "group": f"{view.scene.title}, {view.title}",
-                "integrator": {"path": "camera", "light": "lights"}[view.reference_integrator],
+                "integrator": FROM[references.integrator_of(view, film)],
                 "spp": sum(record["spp"] for record in references.require(view, film).values()),
                 "half_difference": references.half_difference(halves),
                 "own_relmse": own,
