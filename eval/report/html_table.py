@@ -107,7 +107,7 @@ def plain(value: Any) -> str:
 
 
 def filters_html(table: dict[str, Any], columns: list[dict[str, Any]]) -> str:
-    """Lists of the values of the columns that choose rows."""
+    """Lists of the values of the columns that choose rows, and of the measures, to see one alone."""
     parts = ['<div class="filters">']
     for k, column in enumerate(columns):
         if column["key"] not in table["filters"]:
@@ -117,6 +117,13 @@ def filters_html(table: dict[str, Any], columns: list[dict[str, Any]]) -> str:
         parts.append(
             f'<label>{escape(column["label"])} <select data-column="{k}">'
             f'<option value="">all</option>{options}</select></label>'
+        )
+    measures = [(k, column["label"]) for k, column in enumerate(columns) if column["better"]]
+    if len(measures) > 1:
+        options = "".join(f'<option value="{k}">{escape(name)}</option>' for k, name in measures)
+        parts.append(
+            '<label>measure <select class="measures"><option value="">all</option>'
+            f"{options}</select></label>"
         )
     return "".join(parts) + "</div>"
 

@@ -198,8 +198,8 @@ class InputTest(unittest.TestCase):
                 "tables[1].filters: no column has the key 'nothing'",
             ),
             (
-                lambda r: r["tables"][2]["rows"][0].update(diagram="none"),
-                "no diagram has the name 'none'; add it to eval/report/diagrams",
+                lambda r: r["tables"][2]["rows"][0].update(diagram="nothing"),
+                "no diagram has the name 'nothing'; add it to eval/report/diagrams",
             ),
             (
                 lambda r: r["tables"][1]["rows"][0]["picture"].update(image="none"),

@@ -162,6 +162,7 @@ def tables() -> list[dict[str, Any]]:
                 {"key": "scene", "label": "Scene"},
                 {"key": "gather", "label": "Gather"},
                 {"key": "rmse", "label": "RMSE", "better": "low"},
+                {"key": "rays", "label": "Rays", "better": "low"},
             ],
             "filters": ["scene", "gather"],
             "rows": [
@@ -170,6 +171,7 @@ def tables() -> list[dict[str, Any]]:
                     "scene": scene,
                     "gather": gather,
                     "rmse": rmse,
+                    "rays": 7,
                     "picture": {"scene": "room", "view": view, "image": gather},
                 }
                 for scene, view, gather, rmse in (

@@ -51,6 +51,20 @@ class TableTest(PageCase):
         self.choose(1, "")
         self.assertEqual(len(self.rows()), 4)
 
+    def test_one_measure_is_seen_alone(self) -> None:
+        heads = [["Scene", "Gather", "RMSE", "Rays"], ["Scene", "Gather", "Rays"]]
+        for value, expected in (("3", heads[1]), ("", heads[0])):
+            self.choose(2, value)
+            for part in ("thead", "tbody tr:not(.group)"):
+                shown: list[int] = self.js(
+                    "return [...document.querySelector(`#table-field ${arguments[0]}`)"
+                    ".querySelectorAll('th, td')]"
+                    ".filter((cell) => cell.getClientRects().length > 0)"
+                    ".map((cell) => cell.cellIndex)",
+                    part,
+                )
+                self.assertEqual([heads[0][k] for k in shown], expected)
+
     def test_sorting(self) -> None:
         self.assertEqual(self.sort(2), "ascending")
         self.assertEqual(self.rows(), ["South a", "North a", "North b", "South wild"])
@@ -62,8 +76,8 @@ class TableTest(PageCase):
         self.assertEqual(self.headings(), ["North", "South"])
 
     def test_a_row_shows_its_picture(self) -> None:
-        for width in (1280, 400):
-            self.open(width, "light")
+        for width, scheme in ((1280, "light"), (400, "light"), (400, "dark")):
+            self.open(width, scheme)
             home = self.js("return document.querySelector('#view-room-main .viewer') !== null")
             self.assertTrue(home)
             button = self.all("#table-field button.picture")[1]

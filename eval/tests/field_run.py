@@ -60,12 +60,12 @@ class FieldRun(unittest.TestCase):
         pictures = [r["picture"] for r in report["tables"][0]["rows"] if r["picture"]]
         self.assertGreaterEqual(len(pictures), len(self.gathers) // 2)
         self.assertLessEqual({p["image"] for p in pictures}, images)
-        texts = {r["gather"]: r["text"] for r in report["tables"][1]["rows"]}
-        self.assertEqual(list(texts), self.gathers)
+        texts = {r["name"]: r["text"] for r in report["tables"][1]["rows"]}
+        self.assertLess({*self.gathers, "near-field", "spherical"}, set(texts))
         self.assertTrue(all(len(text) > 40 for text in texts.values()))
-        self.assertEqual([r["diagram"] for r in report["tables"][1]["rows"]], self.gathers)
+        self.assertEqual([r["diagram"] for r in report["tables"][1]["rows"]], list(texts))
         page = (FOLDER / "report.html").read_text()
-        self.assertEqual(page.count('<svg class="diagram"'), len(self.gathers))
+        self.assertEqual(page.count('<svg class="diagram"'), len(texts))
 
 
 if __name__ == "__main__":

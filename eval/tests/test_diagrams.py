@@ -1,4 +1,4 @@
-"""Tests that each gather has a paragraph and a diagram, without the tools."""
+"""Tests that each method has a paragraph and a diagram, without the tools."""
 
 import sys
 import unittest
@@ -10,21 +10,26 @@ sys.path[:0] = [str(EVAL), str(EVAL / "report")]
 from bnvpl_eval.parts import field  # noqa: E402
 from diagrams import DIAGRAMS, diagram_svg, matrices  # noqa: E402
 
-FOLDERS = (EVAL.parent / "tools/render/gather").glob("*/theory.md")
-GATHERS = sorted(theory.parent.name.replace("_", "-") for theory in FOLDERS)
+METHODS = {
+    kind: sorted(
+        theory.parent.name.replace("_", "-")
+        for theory in (EVAL.parent / folder).glob("*/theory.md")
+    )
+    for kind, folder in field.PAGES.items()
+}
 
 
 class Diagrams(unittest.TestCase):
-    def test_each_gather_has_one(self) -> None:
-        self.assertGreater(len(GATHERS), 10)
-        self.assertEqual(sorted(DIAGRAMS), GATHERS)
+    def test_each_method_has_one(self) -> None:
+        self.assertGreater(len(METHODS["gather"]), 10)
+        self.assertEqual(sorted(DIAGRAMS), sorted([*sum(METHODS.values(), []), *field.KINDS]))
 
     def test_each_is_well_formed_and_has_a_title(self) -> None:
         for name in DIAGRAMS:
             root = ElementTree.fromstring(diagram_svg(name))
             self.assertEqual(root[0].tag, "title")
             self.assertTrue((root[0].text or "").startswith(f"{name}: "))
-            self.assertGreater(len(root), 20, name)
+            self.assertGreater(len(root), 8, name)
 
     def test_no_two_are_alike(self) -> None:
         bodies = {diagram_svg(name).partition("</title>")[2] for name in DIAGRAMS}
@@ -39,10 +44,13 @@ class Diagrams(unittest.TestCase):
             computed = sorted(column for column in alike if column.isupper())
             self.assertEqual(computed, sorted(set(alike.upper())))
 
-    def test_the_paragraph_says_what_the_gather_does(self) -> None:
-        for name in GATHERS:
-            text = field.paragraph(name)
+    def test_the_paragraph_says_what_the_method_does(self) -> None:
+        made = field.explanation(METHODS["gather"], METHODS["compensation"])
+        self.assertEqual(sorted(row["diagram"] for row in made["rows"]), sorted(DIAGRAMS))
+        for row in made["rows"]:
+            name, text = row["name"], row["text"]
             self.assertGreater(len(text), 40, name)
+            self.assertTrue(text.endswith("."), name)
             self.assertNotRegex(text, r"Source:|[*`]|\]\(", name)
 
 

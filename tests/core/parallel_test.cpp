@@ -1,10 +1,11 @@
 #include "core/parallel.h"
 
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <cmath>
 #include <vector>
+
+#include "tests/support/threads.h"
 
 namespace bnvpl {
 namespace {
@@ -21,8 +22,8 @@ TEST(Parallel, SumDoesNotDependOnThreads) {
   const auto term = [](size_t i) { return std::sin(double(i)) * std::pow(10.0, double(i % 17)); };
   std::vector<double> sums;
   for (const size_t threads : {1u, 2u, 7u}) {
-    tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    for (int repeat = 0; repeat < 5; ++repeat) sums.push_back(parallelSum(100001, term));
+    for (int repeat = 0; repeat < 5; ++repeat)
+      sums.push_back(test::withThreads(threads, [&] { return parallelSum(100001, term); }));
   }
   for (const double s : sums) EXPECT_EQ(s, sums.front());
   EXPECT_EQ(parallelSum(0, term), 0.0);

@@ -2,7 +2,6 @@
 #include "tools/eliminate/eliminate.h"
 
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <atomic>
 #include <cmath>
@@ -12,6 +11,7 @@
 #include "core/random.h"
 #include "spatial/morton_order.h"
 #include "tests/eliminate/keep.h"
+#include "tests/support/threads.h"
 #include "tools/eliminate/radii.h"
 
 namespace bnvpl {
@@ -179,10 +179,8 @@ TEST(Eliminate, AnyNumberOfThreadsGivesTheSame) {
     for (const char* method : {"elimination", "random"}) {
       const Given options = with(keep(2000, density), {{"method", method}});
       std::vector<KeptRows> results;
-      for (const size_t threads : {1u, 2u, 7u}) {
-        tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-        results.push_back(keepRowsOf(cloud, options));
-      }
+      for (const size_t threads : {1u, 2u, 7u})
+        results.push_back(test::withThreads(threads, [&] { return keepRowsOf(cloud, options); }));
       for (const KeptRows& result : results) {
         EXPECT_EQ(result.rows, results[0].rows);
         EXPECT_EQ(result.radius, results[0].radius);

@@ -1,12 +1,12 @@
 #include "tools/estimate/estimate.h"
 
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <array>
 
 #include "tests/support/pipeline.h"
+#include "tests/support/threads.h"
 #include "tests/transport/plain_scene.h"
 
 namespace bnvpl::test {
@@ -35,8 +35,9 @@ TEST(Estimate, AnyThreadCountGivesTheSameBits) {
   const VplTable start = keptVpls(world, {{"count", "1000"}}, {{"count", "10k"}});
   VplTable first;
   for (const size_t threads : {1, 2, 7}) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    const VplTable lit = lightVpls(world, start, {{"photons", "50k"}}).table;
+    const VplTable lit = withThreads(threads, [&] {
+      return lightVpls(world, start, {{"photons", "50k"}}).table;
+    });
     if (threads == 1) first = lit;
     EXPECT_EQ(lit.flux, first.flux);
     EXPECT_EQ(lit.photons, first.photons);

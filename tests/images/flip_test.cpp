@@ -1,6 +1,5 @@
 // FLIP against the claims of the papers, values computed by hand, and flip_oracle.py.
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <cmath>
 #include <numeric>
@@ -9,6 +8,7 @@
 #include "images/flip_filter.h"
 #include "images/hdr_flip.h"
 #include "tests/support/flat_image.h"
+#include "tests/support/threads.h"
 
 namespace bnvpl {
 namespace {
@@ -120,8 +120,7 @@ TEST(Flip, ExtremeValuesAndSizesStayInRange) {
 TEST(Flip, TheSameBytesForAnyNumberOfThreads) {
   const RgbImage a = pattern(true), b = pattern(false);
   const auto with = [&](size_t threads) {
-    tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    return flipMaps(a, b, {}).hdr;
+    return test::withThreads(threads, [&] { return flipMaps(a, b, {}).hdr; });
   };
   EXPECT_EQ(with(1), with(7));
 }

@@ -1,11 +1,11 @@
 #include "tools/place/indirect_share.h"
 
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <limits>
 
 #include "tests/support/pipeline.h"
+#include "tests/support/threads.h"
 
 namespace bnvpl::test {
 namespace {
@@ -65,8 +65,8 @@ TEST(IndirectShare, HardlyDependsOnTheSeedAndNotOnThreads) {
   const World world("cornell/scene.toml");
   const double one = shareOf(world);
   EXPECT_NEAR(shareOf(world, 2), one, 0.04);
-  tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
-  EXPECT_EQ(shareOf(world), one);
+  for (const size_t threads : {1u, 7u})
+    EXPECT_EQ(withThreads(threads, [&] { return shareOf(world); }), one);
 }
 
 // The room with the lamp has direct light; of both views, the one without decides.

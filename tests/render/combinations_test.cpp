@@ -2,17 +2,19 @@
 #include <gtest/gtest.h>
 
 #include "core/errors.h"
+#include "scene/load_scene.h"
 #include "tests/support/pipeline.h"
 #include "tools/render/compensate/compensate.h"
 #include "tools/render/gather/gather.h"
+#include "tools/render/render.h"
+#include "tools/render/stage_options.h"
 #include "transport/virtual_light_kinds.h"
 
 namespace bnvpl::test {
 namespace {
 
-class Combinations : public testing::Test {
- protected:
-  Combinations() : world("cornell/scene.toml") {
+struct Room {
+  explicit Room(const std::string& scene) : world(scene) {
     world.scene.film = {16, 12};
     lit = litVpls(world, {{"count", "200"}}, {{"photons", "50k"}, {"emit-points", "1"}},
                   {{"count", "4k"}});
@@ -40,6 +42,11 @@ class Combinations : public testing::Test {
   VplTable lit;
 };
 
+class Combinations : public testing::Test, protected Room {
+ protected:
+  Combinations() : Room("cornell/scene.toml") {}
+};
+
 TEST_F(Combinations, EveryGatherWithEveryKindOfLightAndCompensation) {
   for (const std::string_view kind : VplKinds::names) {
     for (const CompensateMethod* compensate : compensateMethods()) {
@@ -59,6 +66,18 @@ TEST_F(Combinations, EveryGatherWithEveryKindOfLightAndCompensation) {
   }
 }
 
+// Rough metal, glazed tiles and lacquer: lobes of spheres are sampled there.
+TEST(CombinationsOnGloss, EveryGatherWithSpheres) {
+  const Room kitchen("kitchen/scene.toml");
+  const Given rest{{"light", "spherical"}, {"compensate", "none"}, {"spp", "2"}};
+  const double all = *kitchen.indirect(with({{"gather", "all"}}, rest));
+  for (const GatherMethod* gather : gatherMethods()) {
+    const auto ours = kitchen.indirect(with({{"gather", std::string(gather->name)}}, rest));
+    ASSERT_TRUE(ours.has_value()) << gather->name;
+    EXPECT_NEAR(*ours / all, 1.0, 0.15) << gather->name;
+  }
+}
+
 TEST_F(Combinations, EveryGatherInPassesAndCrops) {
   for (const Given& rest :
        {Given{{"passes", "2"}}, Given{{"spp", "2"}, {"crop", "3,2,13,10"}, {"only", "indirect"}}}) {
@@ -69,6 +88,38 @@ TEST_F(Combinations, EveryGatherInPassesAndCrops) {
       EXPECT_NEAR(*ours / all, 1.0, 0.15) << gather->name << rest.front().first;
     }
   }
+}
+
+// What --methods --json lists as refused is refused, and nothing else.
+TEST(RefusedOptions, AreThoseThatAreListed) {
+  const Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "cornell/scene.toml");
+  const auto isRefused = [&](const Given& options) {
+    try {
+      lightGroupsOf(resolveRender(options), scene);
+    } catch (const UsageError&) {
+      return true;
+    } catch (const InputError&) {  // no light of the scene has a group
+    }
+    return false;
+  };
+  const std::vector<std::pair<std::string_view, Given>> asked{
+      {"--control vpls", {{"control", "vpls"}}},
+      {"--for-denoiser", {{"for-denoiser", "on"}}},
+      {"--layers light_groups", {{"layers", "light_groups"}}},
+      {"--light spherical", {{"light", "spherical"}}}};
+  size_t refusals = 0;
+  for (const MethodSlot& slot : renderSpec().slots) {
+    if (slot.name != "gather" && slot.name != "compensate") continue;
+    for (const MethodEntry& m : slot.methods) {
+      for (const auto& [text, options] : asked) {
+        const bool listed = std::ranges::find(m.refuses, text) != m.refuses.end();
+        const Given chosen{{std::string(slot.name), std::string(m.name)}};
+        EXPECT_EQ(isRefused(with(options, chosen)), listed) << m.name << " " << text;
+        refusals += listed;
+      }
+    }
+  }
+  EXPECT_GE(refusals, 5u);
 }
 
 // Its layer is asked for beside a combination that is refused, which is what the user hears of.

@@ -3,7 +3,6 @@
 #include "tools/render/film/fireflies.h"
 
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <atomic>
 #include <memory>
@@ -11,6 +10,7 @@
 
 #include "core/random.h"
 #include "tests/support/pipeline.h"
+#include "tests/support/threads.h"
 #include "tools/render/film/passes.h"
 #include "tools/render/film/tiles.h"
 
@@ -328,8 +328,7 @@ TEST(Fireflies, SameBytesForAnyThreads) {
   const Image image = film(noise, 16, true);
   EXPECT_NE(*image.find("R"), *film(noise, 16, false).find("R"));
   for (const size_t threads : {1u, 7u}) {
-    tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    const Image again = film(noise, 16, true);
+    const Image again = test::withThreads(threads, [&] { return film(noise, 16, true); });
     for (const ImageChannel& c : image.channels) ASSERT_EQ(*again.find(c.name), c.data) << c.name;
   }
 }

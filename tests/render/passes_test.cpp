@@ -2,9 +2,9 @@
 #include "tools/render/film/passes.h"
 
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include "tests/support/pipeline.h"
+#include "tests/support/threads.h"
 #include "tests/support/z_test.h"
 #include "tools/render/film/partial_film.h"
 #include "tools/render/stage_options.h"
@@ -234,10 +234,8 @@ TEST(Passes, SameBytesForAnyThreadsAndInterruptions) {
     EXPECT_GT(states.size(), 14u);
     for (size_t k = 0; k < states.size(); k += 5)
       others.push_back(film(both, 7, 1, true, {states[k], {}, {}}));
-    for (const size_t threads : {1u, 7u}) {
-      tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-      others.push_back(film(both, 7, 1, true));
-    }
+    for (const size_t threads : {1u, 7u})
+      others.push_back(test::withThreads(threads, [&] { return film(both, 7, 1, true); }));
     for (const Made& other : others) {
       ASSERT_EQ(other.passes.passes, 7u);
       ASSERT_EQ(other.passes.error, whole.passes.error);

@@ -161,10 +161,25 @@ TEST(SphericalLights, ReusedVerticesKeepTheLightOfUncoveredWalls) {
   EXPECT_NEAR(light("8") / light("1"), 1.0, 0.01);
 }
 
-TEST(SphericalLights, AreTheSameForAnyThreadsAndShards) {
-  const Given spheres{{"light", "spherical"}, {"clamp", "2"}, {"spp", "1"}};
-  expectSameBytesForAnyThreads("all", spheres);
-  expectSameBytesInShards("all", spheres);
+TEST(LightKindsOfImages, AreTheSameForAnyThreadsAndShards) {
+  for (const std::string_view light : VplKinds::names) {
+    const Given options{{"light", std::string(light)}, {"clamp", "2"}, {"spp", "1"}};
+    expectSameBytesForAnyThreads("all", options);
+    expectSameBytesInShards("all", options);
+  }
+}
+
+// A light without size is a point, whatever its attenuation or shape.
+TEST(LightKindsOfImages, WithoutSizeTheyArePoints) {
+  const GatherCase& c = *gatherCases().front();
+  const Image& points = c.ofAll({{"clamp", "0"}});
+  for (const std::string_view light : VplKinds::names) {
+    const Image& ours = c.ofAll({{"clamp", "0"}, {"light", std::string(light)}});
+    for (size_t i = 0; i < points.pixelCount(); ++i) {
+      const float x = (*points.find("G"))[i], y = (*ours.find("G"))[i];
+      ASSERT_NEAR(y, x, 1e-4f * (x + 1e-3f)) << light << " " << i;
+    }
+  }
 }
 
 // Light of a diffuse box has a closed form but where a horizon cuts a sphere. The counter stands

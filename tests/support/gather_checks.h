@@ -3,12 +3,12 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <cmath>
 #include <map>
 
 #include "tests/support/pipeline.h"
+#include "tests/support/threads.h"
 #include "tools/render/gather/gather.h"
 #include "transport/virtual_light_kinds.h"
 
@@ -100,13 +100,13 @@ inline void expectMeanOfAll(const std::string& gather, double maxError, const Gi
 
 inline void expectSameBytesForAnyThreads(const std::string& gather, const Given& options = {}) {
   const GatherCase& c = *gatherCases().front();
-  std::vector<std::vector<float>> red;
-  for (const size_t threads : {1u, 7u, 16u}) {
-    tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    red.push_back(*c.indirect(gather, options, 1).find("R"));
+  const auto image = [&] { return c.indirect(gather, with({{"layers", "all"}}, options), 1); };
+  const Image one = withThreads(1, image);
+  for (const size_t threads : {7u, 16u}) {
+    const Image other = withThreads(threads, image);
+    for (const ImageChannel& channel : one.channels)
+      EXPECT_EQ(*other.find(channel.name), channel.data) << channel.name << " " << threads;
   }
-  EXPECT_EQ(red[0], red[1]);
-  EXPECT_EQ(red[0], red[2]);
 }
 
 // Three shards joined are the bytes of the whole image.

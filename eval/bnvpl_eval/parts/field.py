@@ -226,7 +226,13 @@ def expected_s(rows: list[dict[str, Any]], count: int) -> float:
 
 
 def identity(row: dict[str, Any]) -> str:
-    return f"{row['gather']}-{row['compensate']}"
+    name = f"{row['gather']}-{row['compensate']}"
+    return name if row["at"] == EQUAL_TIME else f"{name}-{row['vpls']}"
+
+
+def label(row: dict[str, Any]) -> str:
+    name = f"{row['gather']}, {row['compensate']}"
+    return name if row["at"] == EQUAL_TIME else f"{name}, {row['vpls']:,} VPLs"
 
 
 def mean_reference(context: Context, view: View) -> Path:
@@ -244,7 +250,7 @@ def add_pictures(context: Context, view: View, rows: list[dict[str, Any]]) -> No
         shown.append(
             {
                 "id": identity(row),
-                "label": f"{row['gather']}, {row['compensate']}",
+                "label": label(row),
                 "file": row["images"][0],
                 "numbers": f"in the table: mean ratio {row['mean_ratio']:.3f}, relMSE "
                 f"{row['relmse']:.3g} ({row['seeds']} seeds)",
@@ -286,22 +292,45 @@ def add_plots(context: Context, view: View, found: dict[str, list[dict[str, Any]
         )
 
 
-def paragraph(gather: str) -> str:
+# What has a page of its own, and the section of docs/theory.md about each kind of light.
+PAGES = {"gather": "tools/render/gather", "compensation": "tools/render/compensate"}
+KINDS = ("disk", "yuksel", "spherical")
+
+
+def first_paragraph(text: str, after: str = "#") -> str:
+    """The first paragraph after a heading, without marks."""
+    blocks = text[text.index(after) :].split("\n\n")
+    words = next(block for block in blocks if block and not block.startswith("#"))
+    words = re.sub(r"\[([^\]]+)\]\([^)]+\)", r"\1", " ".join(words.split()))
+    words = words.replace("`", "").replace("*", "")
+    return words.removesuffix(":") + "." if words.endswith(":") else words
+
+
+def paragraph(kind: str, name: str) -> str:
     """The first paragraph of the method's theory, as text."""
-    folder = ROOT / "tools/render/gather" / gather.replace("-", "_")
-    blocks = (folder / "theory.md").read_text().split("\n\n")
-    text = next(block for block in blocks if block and not block.startswith("#"))
-    text = re.sub(r"\[([^\]]+)\]\([^)]+\)", r"\1", " ".join(text.split()))
-    return text.replace("`", "").replace("*", "")
+    page = ROOT / PAGES[kind] / name.replace("-", "_") / "theory.md"
+    return first_paragraph(page.read_text())
 
 
-def explanation(gathers: list[str]) -> dict[str, Any]:
-    """A table with a paragraph and a diagram for each gather."""
-    texts = [{"group": "", "gather": g, "text": paragraph(g)} for g in gathers]
-    columns = [column("gather", "gather"), column("text", "what it does")]
-    made = table("gathers", "What the gathers do", SHAPES, columns, texts)
+def explanation(gathers: list[str], compensations: list[str]) -> dict[str, Any]:
+    """A table with a paragraph and a diagram for each gather, compensation and kind of light."""
+    theory = (ROOT / "docs/theory.md").read_text()
+    texts = [
+        {"group": f"{kind}s", "name": name, "text": paragraph(kind, name)}
+        for kind, names in (("gather", gathers), ("compensation", compensations))
+        for name in names
+    ] + [
+        {
+            "group": "kinds of light",
+            "name": kind,
+            "text": first_paragraph(theory, f"`--light {kind}` "),
+        }
+        for kind in KINDS
+    ]
+    columns = [column("name", "method"), column("text", "what it does")]
+    made = table("methods", "What the methods do", SHAPES, columns, texts)
     for row in made["rows"]:
-        row["diagram"] = row["gather"]
+        row["diagram"] = row["name"]
     return made
 
 
@@ -341,8 +370,10 @@ def run(context: Context) -> None:
                 context.say(f"field: {view.name}, {gather}, {compensate}, equal time")
                 row = all_of.at_equal_time(view, gather, compensate, found[gather])
                 shown += [row] if row else []
-        if shown:
-            add_pictures(context, view, shown)
+        # Of each gather, the image of the most VPLs stands beside those at equal time.
+        most = [rows[-1] for rows in found.values() if rows]
+        if shown + most:
+            add_pictures(context, view, shown + most)
         add_plots(context, view, {g: rows for g, rows in found.items() if rows})
     context.title = "Gathers of virtual point lights, on equal terms"
     context.lead = (
@@ -355,4 +386,4 @@ def run(context: Context) -> None:
     for shown_row, row in zip(made["rows"], rows, strict=True):
         shown_row["picture"] = row.get("picture")
     context.tables.append(made)
-    context.tables.append(explanation(gathers))
+    context.tables.append(explanation(gathers, compensations))

@@ -1,4 +1,4 @@
-"""The diagrams of vpl-render's gathers: what each decides, on one small drawing.
+"""The diagrams of vpl-render's methods: what each decides, on one small drawing.
 
 Each is drawn after the theory.md of its method.
 """
@@ -7,10 +7,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from . import cells, cuts, matrices, pairs, points
+from . import cells, cuts, matrices, near, pairs, points
 from .shapes import Drawing
 
-# Title and function, by the name of the gather.
+# Title and function, by the name of the gather, compensation or kind of light.
 DIAGRAMS: dict[str, tuple[str, Callable[[Drawing], None]]] = {
     "adaptive-tree": (
         "Clusters of much variance are split; a random descent draws a VPL of each of the others.",
@@ -80,6 +80,35 @@ DIAGRAMS: dict[str, tuple[str, Callable[[Drawing], None]]] = {
     "ward": (
         "Sorted VPLs: rays to the brightest, an expected visibility for the others.",
         points.ward,
+    ),
+    "kollig-keller": (
+        "Rays go on from vertex to vertex; bounded VPLs and lights light each.",
+        near.kollig_keller,
+    ),
+    "local": (
+        "Ends of the rays of a block of receivers light the whole block, without shadow rays.",
+        near.local,
+    ),
+    "near-field": (
+        "Rays from a receiver add the light that the bound takes from VPLs at their ends.",
+        near.near_field,
+    ),
+    "none": (
+        "Within a distance the light of a VPL is bounded, and nothing is added.",
+        near.none,
+    ),
+    "disk": (
+        "The attenuation of a disk beside that of a bounded point.",
+        near.disk,
+    ),
+    "yuksel": (
+        "An attenuation without a bend beside that of a bounded point.",
+        near.yuksel,
+    ),
+    "spherical": (
+        "A receiver takes the mean over the cone of a sphere around the VPL; one ray runs to its "
+        "centre.",
+        near.spherical,
     ),
 }
 

@@ -1,5 +1,5 @@
 // Tables with filters: rows are chosen by what their cells say, sorted by a column, and show their
-// picture below them, in the viewer of its view.
+// picture below them, in the viewer of its view. One measure can be seen alone.
 
 class ResultTable {
   constructor(block, show) {
@@ -13,7 +13,9 @@ class ResultTable {
     this.sorted = el("tbody");
     this.order = {column: -1, down: false};
     this.chosen = new Map();  // column -> text
-    for (const list of block.querySelectorAll(".filters select")) {
+    const measures = block.querySelector(".filters .measures");
+    measures?.addEventListener("change", () => this.measure(measures));
+    for (const list of block.querySelectorAll(".filters select[data-column]")) {
       list.addEventListener("change", () => this.filter(Number(list.dataset.column), list.value));
     }
     for (const button of this.table.querySelectorAll("thead button")) {
@@ -33,6 +35,15 @@ class ResultTable {
     }
     for (const {heading, rows} of this.bodies) {
       if (heading) heading.hidden = rows.every((row) => row.hidden);
+    }
+  }
+
+  // Hides the columns of all measures but the chosen one; none is chosen by "".
+  measure(list) {
+    this.close();
+    const places = [...list.options].map((option) => option.value).filter((value) => value);
+    for (const row of [this.table.tHead.rows[0], ...this.rows]) {
+      for (const k of places) row.cells[k].hidden = list.value !== "" && k !== list.value;
     }
   }
 

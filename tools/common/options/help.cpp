@@ -68,8 +68,11 @@ Json describeSlots(const StageSpec& spec) {
     for (const MethodEntry& m : slot.methods) {
       Json options = Json::array();
       for (const Option& o : m.options) options.push_back(describeMethodOption(o));
-      methods.push_back(
-          {{"name", m.name}, {"summary", m.summary}, {"needs", m.needs}, {"options", options}});
+      methods.push_back({{"name", m.name},
+                         {"summary", m.summary},
+                         {"needs", m.needs},
+                         {"refuses", m.refuses},
+                         {"options", options}});
     }
     slots.push_back({{"name", slot.name},
                      {"default", slot.defaultText},

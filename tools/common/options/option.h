@@ -226,6 +226,7 @@ struct MethodEntry {
   std::string_view name, summary;
   std::span<const Option> options;
   std::vector<std::string_view> needs = {};  // inputs that not all methods of the slot need
+  std::vector<std::string_view> refuses = {};  // options that do not work beside the method
 };
 
 // A set of methods, one of which is selected by an option.

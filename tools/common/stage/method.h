@@ -26,11 +26,19 @@ std::vector<std::string_view> needsOf(const M& method) {
   return needs;
 }
 
+// Options that the method says it does not work with, such as "--light spherical".
+template <typename M>
+std::vector<std::string_view> refusedBy(const M& method) {
+  if constexpr (requires { method.refuses(); }) return method.refuses();
+  return {};
+}
+
 // The methods of a slot as entries of its StageSpec.
 template <typename M>
 std::vector<MethodEntry> entriesOf(std::span<const M* const> methods) {
   std::vector<MethodEntry> entries;
-  for (const M* m : methods) entries.push_back({m->name, m->summary, m->options, needsOf(*m)});
+  for (const M* m : methods)
+    entries.push_back({m->name, m->summary, m->options, needsOf(*m), refusedBy(*m)});
   return entries;
 }
 

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include "tests/support/pipeline.h"
+#include "tests/support/threads.h"
 
 namespace bnvpl::test {
 namespace {
@@ -81,10 +81,8 @@ TEST(Rejection, WeighsByOneOverTheProbability) {
 
 TEST(Rejection, IsTheSameForAnyThreads) {
   std::vector<VplTable> tables;
-  for (const size_t threads : {1u, 5u}) {
-    tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    tables.push_back(cornell().keep({}));
-  }
+  for (const size_t threads : {1u, 5u})
+    tables.push_back(withThreads(threads, [] { return cornell().keep({}); }));
   EXPECT_EQ(tables[0].id, tables[1].id);
   EXPECT_EQ(tables[0].flux, tables[1].flux);
 }

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include "tests/support/pipeline.h"
+#include "tests/support/threads.h"
 #include "tests/transport/plain_scene.h"
 
 namespace bnvpl::test {
@@ -122,8 +122,9 @@ TEST(Paths, AreTheSameForAnyThreadsAndInterruptions) {
   const VplTable vpls = keptVpls(world, {{"count", "200"}}, {{"count", "2k"}});
   const Values options = resolve(estimateSpec(), {{"method", "paths"}, {"points", "16"}});
   const auto made = [&](size_t threads, const WorkControls& controls) {
-    tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    return estimate(vpls, world.accel, world.lights, options, {}, controls).table;
+    return withThreads(threads, [&] {
+      return estimate(vpls, world.accel, world.lights, options, {}, controls).table;
+    });
   };
   const VplTable one = made(1, {});
   struct Stopped {};

@@ -97,6 +97,14 @@ struct CompensateMethod {
   bool oneSize = false;
   bool countsContinued = false;  // the counter is that of the rays from later vertices
   bool sharesPixels = false;  // neighbouring pixels share light, and so noise
+
+  // Options that vpl-render refuses beside the method.
+  std::vector<std::string_view> refuses() const {
+    std::vector<std::string_view> refused;
+    if (oneSize) refused.push_back("--light spherical");
+    if (sharesPixels) refused.push_back("--for-denoiser");
+    return refused;
+  }
 };
 // Defined in the build folder by cmake/Methods.cmake, from the folders beside this file.
 std::span<const CompensateMethod* const> compensateMethods();

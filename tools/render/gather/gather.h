@@ -93,6 +93,15 @@ struct GatherMethod {
   GatherFilter (*gatherFilter)(const Values&) = nullptr;
   bool lightGroups = true;  // fills TileReceivers::groupSums
   bool pixelSum = false;    // treats all samples of a pixel as one, with their weights
+
+  // Options that vpl-render refuses beside the method.
+  std::vector<std::string_view> refuses() const {
+    std::vector<std::string_view> refused;
+    if (pixelSum) refused.push_back("--control vpls");
+    if (gatherFilter) refused.push_back("--for-denoiser");
+    if (!lightGroups) refused.push_back("--layers light_groups");
+    return refused;
+  }
 };
 // Defined in the build folder by cmake/Methods.cmake, from the folders beside this file.
 std::span<const GatherMethod* const> gatherMethods();

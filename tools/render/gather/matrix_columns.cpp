@@ -145,4 +145,21 @@ std::vector<Cluster> clustersBySampling(const Cluster& vpls, const Columns& colu
   return out;
 }
 
+std::vector<Cluster> clustersOfSeenAndUnseen(const Columns& columns, size_t count, Rng& rng) {
+  Cluster seen, unseen;
+  for (uint32_t i = 0; i < columns.size(); ++i)
+    (columns.norm(i) > 0.0 ? seen : unseen).push_back(i);
+  std::vector<Cluster> clusters;
+  if (!seen.empty()) clusters = clustersBySampling(seen, columns, count, rng);
+  if (!unseen.empty()) clusters.push_back(std::move(unseen));
+  return clusters;
+}
+
+std::vector<double> sharesOf(const VplLights& vpls, const Columns& columns) {
+  std::vector<double> shares(columns.size());
+  for (size_t i = 0; i < shares.size(); ++i)
+    shares[i] = columns.norm(i) > 0.0 ? columns.norm(i) : double{mean(vpls.intensity[i])};
+  return shares;
+}
+
 }  // namespace bnvpl

@@ -103,6 +103,14 @@ class ClusterDraws {
 std::vector<Cluster> clustersBySampling(const Cluster& vpls, const Columns& columns, size_t count,
                                         Rng& rng);
 
+// Clusters by sampling of the VPLs that some row sees, and one of all others: without it the mean
+// of many images would lack their light. There are VPLs.
+std::vector<Cluster> clustersOfSeenAndUnseen(const Columns& columns, size_t count, Rng& rng);
+
+// With what share a VPL is drawn for its cluster: by its light in the rows, or by its flux where no
+// row sees it.
+std::vector<double> sharesOf(const VplLights& vpls, const Columns& columns);
+
 // Splits the cluster of largest cost, the largest of those that cost alike, until there are
 // `count`. split(cluster) returns one part and leaves the other. `free`: also splits clusters of no
 // cost.

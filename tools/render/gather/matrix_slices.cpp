@@ -99,13 +99,14 @@ Columns rowsAbout(const Placed& slice, const std::vector<Placed>& slices, size_t
   return columns.inRows(std::span(order).first(std::min(order.size(), count)));
 }
 
-// Sets the probabilities, up to a factor, with which the VPLs of a cluster stand for it.
-void setShares(const Cluster& cluster, const Columns& nearby, const Columns& all,
+// Sets the probabilities, up to a factor, with which the VPLs of a cluster stand for it. `all` has
+// the shares by all rows.
+void setShares(const Cluster& cluster, const Columns& nearby, std::span<const double> all,
                std::span<double> shares) {
   double sumNearby = 0.0, sumAll = 0.0;
-  for (const uint32_t i : cluster) sumNearby += nearby.norm(i), sumAll += all.norm(i);
+  for (const uint32_t i : cluster) sumNearby += nearby.norm(i), sumAll += all[i];
   for (const uint32_t i : cluster) {
-    shares[i] = kAllRowsShare * all.norm(i) / sumAll;
+    shares[i] = sumAll > 0.0 ? kAllRowsShare * all[i] / sumAll : 1.0;
     if (sumNearby > 0.0) shares[i] += (1.0 - kAllRowsShare) * nearby.norm(i) / sumNearby;
   }
 }
@@ -137,23 +138,22 @@ SlicePlan makeSlicePlan(const GatherInputs& in, const Values& options) {
   std::vector<SurfacePoint> rows;
   for (const Placed& s : plan.slices) rows.push_back(s.point);
   const Columns columns = columnsAt(in, rows, "slices");
-  Cluster vpls(columns.size());
-  std::iota(vpls.begin(), vpls.end(), 0u);
-  std::erase_if(vpls, [&](uint32_t i) { return columns.norm(i) == 0.0; });  // no slice sees them
-  if (vpls.empty()) return plan;
+  if (columns.size() == 0) return plan;
   const auto count = static_cast<size_t>(options[kColumnsOption]);
-  const std::vector<Cluster> common = clustersBySampling(
-      vpls, columns, static_cast<size_t>(std::ceil(kCommonShare * double(count))), rng);
+  const std::vector<Cluster> common = clustersOfSeenAndUnseen(
+      columns, static_cast<size_t>(std::ceil(kCommonShare * double(count))), rng);
+  const std::vector<double> byAllRows = sharesOf(in.vpls, columns);
+  const bool everyVpl = count >= columns.size();  // also those whose columns have one direction
   plan.draws.resize(plan.slices.size());
   parallelFor(plan.slices.size(), 1, [&](size_t s) {
     Rng own(key, s + 1);
     const Columns local =
         rowsAbout(plan.slices[s], plan.slices, options[kNeighbourSlicesOption], columns);
     const std::vector<Cluster> clusters = refinedClusters(
-        common, count, local, false, [&](Cluster& c) { return splitOff(c, local); });
+        common, count, local, everyVpl, [&](Cluster& c) { return splitOff(c, local); });
     std::vector<double> shares(columns.size());
     for (const Cluster& cluster : clusters) {
-      setShares(cluster, local, columns, shares);
+      setShares(cluster, local, byAllRows, shares);
       plan.draws[s].add(cluster, shares, own);
     }
   });

@@ -38,7 +38,7 @@ struct SlicePlan {
   float scale = 1.0f;       // scale of normals
   std::vector<Node> nodes;  // nodes[0] is the root; empty if the film shows nothing
   std::vector<PlacedPoint> slices;
-  std::vector<ClusterDraws> draws;  // empty if no slice sees a VPL
+  std::vector<ClusterDraws> draws;  // empty if there are no VPLs
   // The slice in whose part of space the point lies. There are slices.
   size_t sliceOf(const SurfacePoint& point) const;
 };

@@ -39,6 +39,20 @@ TEST(KolligKeller, IsUnbiasedWhateverTheBound) {
   EXPECT_LT(none.mean, 0.9 * path);
 }
 
+// In the furnace every surface has the same light; the other scene has one bounce between two
+// patches.
+TEST(KolligKeller, KeepsTheEnergy) {
+  for (const char* name : {"furnace/scene.toml", "test/one-bounce.toml"}) {
+    World world(name);
+    world.scene.film = {16, 12};
+    const double path = indirectByPaths(world, {{"spp", "1024"}});
+    const MeanLight ours = overSets(world, {{"compensate", "kollig-keller"}, {"clamp", "8"}});
+    EXPECT_NEAR(ours.mean, path, 3.0 * ours.error + 0.003 * path) << name;
+    EXPECT_LT(ours.error, 0.02 * path) << name;
+    EXPECT_LT(overSets(world, {{"compensate", "none"}, {"clamp", "8"}}).mean, 0.98 * ours.mean);
+  }
+}
+
 // Paths go on where the bound removes light, from more vertices if it removes more.
 TEST(KolligKeller, CountsTheRaysThatGoOn) {
   World world("cornell/scene.toml");

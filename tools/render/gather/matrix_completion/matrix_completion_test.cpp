@@ -51,7 +51,6 @@ class MatrixCompletion : public testing::TestWithParam<const char*> {
 INSTANTIATE_TEST_SUITE_P(Ways, MatrixCompletion, testing::Values("columns", "separation"),
                          [](const auto& way) { return std::string(way.param); });
 
-// VPLs that no slice's representative sees are lost (theory.md).
 TEST_P(MatrixCompletion, HasTheEnergyOfAllVpls) {
   expectEnergyOfAll("matrix-completion", 0.04, 1, by(with(kSlices, {{"slices", "60"}})));
 }
@@ -63,6 +62,10 @@ TEST_P(MatrixCompletion, HasTheEnergyInFurnaceAndOfOneBounce) {
 TEST_P(MatrixCompletion, IsTheSameForAnyThreadsAndShards) {
   expectSameBytesForAnyThreads("matrix-completion", by(kSlices));
   expectSameBytesInShards("matrix-completion", by(kSlices));
+}
+
+TEST_P(MatrixCompletion, WithAllEntriesAndAColumnForEveryVplItIsAll) {
+  expectSumOverAll("matrix-completion", by({{"entry-share", "1"}, {"columns", "1M"}}));
 }
 
 // All entries sampled: the VPLs of LightSlice with the same clusters.

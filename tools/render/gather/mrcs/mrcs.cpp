@@ -81,22 +81,13 @@ Cluster splitOff(Cluster& cluster, const Columns& columns, Rng& rng) {
   return part;
 }
 
-// Clusters of the VPLs that some row sees, and one of all others, whose VPLs are drawn by their
-// flux: without it the mean of many images would lack their light.
 std::vector<Cluster> clustersOf(const Columns& columns, size_t count, Rng& rng, size_t& splits) {
-  Cluster seen, unseen;
-  for (uint32_t i = 0; i < columns.size(); ++i)
-    (columns.norm(i) > 0.0 ? seen : unseen).push_back(i);
-  std::vector<Cluster> clusters;
-  if (!seen.empty()) {
-    const auto bySampling = static_cast<size_t>(std::ceil(kSampledShare * double(count)));
-    clusters = clustersBySampling(seen, columns, bySampling, rng);
-  }
-  if (!unseen.empty()) clusters.push_back(std::move(unseen));
-  return refinedClusters(std::move(clusters), count, columns, true, [&](Cluster& c) {
-    ++splits;
-    return splitOff(c, columns, rng);
-  });
+  const auto bySampling = static_cast<size_t>(std::ceil(kSampledShare * double(count)));
+  return refinedClusters(clustersOfSeenAndUnseen(columns, bySampling, rng), count, columns, true,
+                         [&](Cluster& c) {
+                           ++splits;
+                           return splitOff(c, columns, rng);
+                         });
 }
 
 struct Plan {
@@ -111,11 +102,7 @@ Plan planOf(const GatherInputs& in, const Values& options) {
   const std::vector<SurfacePoint> rows = rowPoints(in.filmPoints(), options[kRowsOption], rng);
   plan.rows = rows.size();
   const Columns columns = columnsAt(in, rows, "rows");
-  std::vector<double> shares(columns.size());
-  for (size_t i = 0; i < shares.size(); ++i) {
-    const double flux = double{mean(in.vpls.intensity[i])};
-    shares[i] = columns.norm(i) > 0.0 ? columns.norm(i) : flux;
-  }
+  const std::vector<double> shares = sharesOf(in.vpls, columns);
   for (const Cluster& c : clustersOf(columns, options[kColumnsOption], rng, plan.splits))
     plan.draws.add(c, shares, rng);
   return plan;
