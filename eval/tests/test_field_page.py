@@ -56,10 +56,26 @@ class FieldPage(unittest.TestCase):
         )
         self.assertEqual(made[2], ["a", "**0.2**", "-", "1000"])
 
-    def test_gathers_without_a_row_are_named(self) -> None:
-        rows = [row("a", "equal time", 1000, 0.3), row("b", "equal VPLs", 1000, 0.3)]
-        text = field_page.table(rows, ["a", "b", "c"])
-        self.assertTrue(text.endswith("\n\nToo slow for this time: b, c."), text)
+    def test_gathers_without_a_row_have_their_error_at_few_vpls(self) -> None:
+        rows = [
+            row("a", "equal time", 1000, 0.3),
+            row("b", "equal VPLs", 1000, 0.4),
+            row("b", "equal VPLs", 10_000, 0.1),
+            row("tilecuts", "equal VPLs", 1000, 0.5),
+            row("tilecuts", "equal time", 1000, 0.3),
+        ]
+        text = field_page.table(rows, ["a", "b", "c", "tilecuts"])
+        _, few = text.split("\n\nToo slow for this time: b, c. With 1,000 VPLs")
+        self.assertEqual(
+            few.splitlines()[2:],
+            [
+                "| gather | a room |",
+                "|---|---|",
+                "| tilecuts | 0.5 in 10 s |",
+                "| b | 0.4 in 10 s |",
+                "| c | - |",
+            ],
+        )
 
 
 if __name__ == "__main__":

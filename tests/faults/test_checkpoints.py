@@ -18,21 +18,21 @@ RESUMED = [
     Command(
         "estimate",
         "vpl-estimate",
-        "{scene} {made}/v.vpl --photons 60k -o {out}/l.vpl --depfile {out}/l.d --stats "
+        "{scene} {made}/v.vpl --photons 30k -o {out}/l.vpl --depfile {out}/l.d --stats "
         "{out}/l.json" + SAVE,
         ("l.vpl", "l.d", "l.json"),
     ),
     Command(
         "shard",
         "vpl-estimate",
-        "{scene} {made}/v.vpl --photons 120k --shard 2/2 -o {out}/s.shard --depfile {out}/s.d "
+        "{scene} {made}/v.vpl --photons 60k --shard 2/2 -o {out}/s.shard --depfile {out}/s.d "
         "--stats {out}/s.json" + SAVE,
         ("s.shard", "s.d", "s.json"),
     ),
     Command(
         "render",
         "vpl-render",
-        "{scene} {made}/l.vpl --size 40x24 --spp 48 -o {out}/i.exr --png {out}/i.png --depfile "
+        "{scene} {made}/l.vpl --size 40x24 --spp 24 -o {out}/i.exr --png {out}/i.png --depfile "
         "{out}/i.d"
         " --stats {out}/i.json" + SAVE,
         ("i.exr", "i.png", "i.d", "i.json"),

@@ -1,4 +1,6 @@
 // --checkpoint: stages that are stopped and continued.
+#include <chrono>
+
 #include "formats/image/exr_io.h"
 #include "formats/shard/checkpoint.h"
 #include "tests/pipeline/tool_runner.h"
@@ -9,10 +11,18 @@ namespace {
 
 class ResumeRun : public PipelineTest {
  protected:
-  // Stops the command with SIGINT after ever longer times and restarts it until it ends by itself.
-  // Returns how often it was stopped.
-  int runInPieces(const std::string& name, const std::string& arguments) const {
-    double seconds = 0.2;
+  // Runs the command to its end, with the output `whole`, and again with the output `pieces`: it is
+  // stopped by SIGINT after ever longer parts of its time and restarted until it ends by itself.
+  // Both outputs have the same bytes.
+  void expectSameBytesInPieces(const std::string& name, const std::string& arguments,
+                               const std::string& whole, const std::string& pieces) const {
+    const auto begin = std::chrono::steady_clock::now();
+    succeed(name, arguments + " -o " + path(whole));
+    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+    EXPECT_GE(timesStopped(name, arguments + " -o " + path(pieces), 0.4 * taken.count()), 1);
+    EXPECT_EQ(readAll(at(pieces)), readAll(at(whole))) << name << " " << arguments;
+  }
+  int timesStopped(const std::string& name, const std::string& arguments, double seconds) const {
     for (int stopped = 0; stopped < 30; ++stopped, seconds *= 1.3) {
       const Outcome r =
           shell("timeout --foreground -s INT " + std::to_string(seconds) + " '" BNVPL_BIN "/" +
@@ -30,39 +40,18 @@ class ResumeRun : public PipelineTest {
 
 TEST_F(ResumeRun, StoppedAgainAndAgainGivesTheSameBytes) {
   makeStages(scene_);
-  const std::string estimate =
-      scene_ + " " + path("vpls.vpl") + " --photons 3M --irradiance-error 0";
-  const std::string render =
-      scene_ + " " + path("lit.vpl") + " --size 64x48 --spp 160 --layers all";
-  const std::string place = scene_ + " -n 400k";
-  succeed("vpl-place", place + " -o " + path("placed.vpl"));
-  EXPECT_GE(runInPieces("vpl-place", place + " -o " + path("placed-pieces.vpl")), 1);
-  EXPECT_EQ(readAll(at("placed-pieces.vpl")), readAll(at("placed.vpl")));
-  succeed("vpl-estimate", estimate + " -o " + path("whole.vpl"));
-  EXPECT_GE(runInPieces("vpl-estimate", estimate + " -o " + path("pieces.vpl")), 1);
-  EXPECT_EQ(readAll(at("pieces.vpl")), readAll(at("whole.vpl")));
-  succeed("vpl-render", render + " -o " + path("whole.exr"));
-  EXPECT_GE(runInPieces("vpl-render", render + " -o " + path("pieces.exr")), 1);
-  EXPECT_EQ(readAll(at("pieces.exr")), readAll(at("whole.exr")));
-  const std::string passes = render + " --passes 30";
-  succeed("vpl-render", passes + " -o " + path("whole.exr"));
-  EXPECT_GE(runInPieces("vpl-render", passes + " -o " + path("pieces.exr")), 1);
-  EXPECT_EQ(readAll(at("pieces.exr")), readAll(at("whole.exr")));
-  const std::string photons = scene_ + " --integrator light --size 64x48 --spp 512";
-  succeed("vpl-render", photons + " -o " + path("whole.exr"));
-  EXPECT_GE(runInPieces("vpl-render", photons + " -o " + path("pieces.exr")), 1);
-  EXPECT_EQ(readAll(at("pieces.exr")), readAll(at("whole.exr")));
-  // The work is large enough that a third of it takes longer than the first stop.
-  const std::string more = scene_ + " " + path("vpls.vpl") + " --photons 9M --irradiance-error 0",
-                    morePhotons = scene_ + " --integrator light --size 64x48 --spp 4096";
-  for (const auto& [name, work] : {std::pair{"vpl-estimate", more}, {"vpl-render", morePhotons}}) {
-    const std::string shard = work + " --shard 2/3";
-    const std::string whole = name + std::string("-whole.shard"),
-                      pieces = name + std::string("-pieces.shard");
-    succeed(name, shard + " -o " + path(whole));
-    EXPECT_GE(runInPieces(name, shard + " -o " + path(pieces)), 1);
-    EXPECT_EQ(readAll(at(pieces)), readAll(at(whole)));
-  }
+  expectSameBytesInPieces("vpl-place", scene_ + " -n 200k", "placed.vpl", "placed-pieces.vpl");
+  const std::string estimate = scene_ + " " + path("vpls.vpl") + " --irradiance-error 0";
+  expectSameBytesInPieces("vpl-estimate", estimate + " --photons 1M", "whole.vpl", "pieces.vpl");
+  const std::string render = scene_ + " " + path("lit.vpl") + " --size 64x48 --layers all",
+                    photons = scene_ + " --integrator light --size 64x48";
+  for (const std::string& work :
+       {render + " --spp 48", render + " --passes 10", photons + " --spp 256"})
+    expectSameBytesInPieces("vpl-render", work, "whole.exr", "pieces.exr");
+  for (const auto& [name, work] : {std::pair{"vpl-estimate", estimate + " --photons 3M"},
+                                   {"vpl-render", photons + " --spp 768"}})
+    expectSameBytesInPieces(name, work + " --shard 2/3", name + std::string("-whole.shard"),
+                            name + std::string("-pieces.shard"));
   EXPECT_FALSE(fs::exists(at("work.checkpoint")));  // done: nothing to continue
 }
 
@@ -74,11 +63,8 @@ TEST_F(ResumeRun, LightGroupsOfGuidedPathsGiveTheSameBytes) {
   makeStages(scene);
   const std::string render =
       scene + " " + path("lit.vpl") + " --integrator guided --size 64x48 --layers light_groups";
-  for (const char* samples : {" --spp 64", " --passes 12"}) {
-    succeed("vpl-render", render + samples + " -o " + path("whole.exr"));
-    EXPECT_GE(runInPieces("vpl-render", render + samples + " -o " + path("pieces.exr")), 1);
-    EXPECT_EQ(readAll(at("pieces.exr")), readAll(at("whole.exr"))) << samples;
-  }
+  for (const char* samples : {" --spp 32", " --passes 6"})
+    expectSameBytesInPieces("vpl-render", render + samples, "whole.exr", "pieces.exr");
   EXPECT_NE(readExr(at("pieces.exr")).find("light_fill.R"), nullptr);
 }
 

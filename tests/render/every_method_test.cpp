@@ -20,8 +20,11 @@ std::string testName(const testing::TestParamInfo<std::string>& info) {
 }
 
 class EveryGather : public testing::TestWithParam<std::string> {};
-TEST_P(EveryGather, IsTheSameForAnyThreads) { expectSameBytesForAnyThreads(GetParam()); }
-TEST_P(EveryGather, IsTheSameInShards) { expectSameBytesInShards(GetParam()); }
+const Given kTwoSamples{{"spp", "2"}};  // a pixel's sum needs two
+TEST_P(EveryGather, IsTheSameForAnyThreads) {
+  expectSameBytesForAnyThreads(GetParam(), kTwoSamples);
+}
+TEST_P(EveryGather, IsTheSameInShards) { expectSameBytesInShards(GetParam(), kTwoSamples); }
 INSTANTIATE_TEST_SUITE_P(All, EveryGather, testing::ValuesIn(namesOf(gatherMethods())), testName);
 
 // The clamp removes enough light for compensation to matter.

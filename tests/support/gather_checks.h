@@ -22,13 +22,14 @@ struct GatherCase {
     world.scene.film = film;
     lit = litVpls(world, eliminated, estimated, placed);
   }
-  // An image of the VPLs' contribution alone.
+  // An image of the VPLs' contribution, with little else.
   Image indirect(const std::string& gather, const Given& options = {}, uint64_t seed = 1) const {
-    return renderVpls(world, lit,
-                      with(with(kPlainRender,
-                                {{"gather", gather}, {"only", "indirect"}, {"seed", typed(seed)}}),
-                           options))
-        .image;
+    const Given own{{"gather", gather},
+                    {"only", "indirect"},
+                    {"caustic-photons", "0"},
+                    {"near-field-rays", "1"},
+                    {"seed", typed(seed)}};
+    return renderVpls(world, lit, with(with(kPlainRender, own), options)).image;
   }
   // The sum over all VPLs, which the tests of all gathers share.
   const Image& ofAll(const Given& options = {}, uint64_t seed = 1) const {

@@ -370,7 +370,7 @@ def run(context: Context) -> None:
                 context.say(f"field: {view.name}, {gather}, {compensate}, equal time")
                 row = all_of.at_equal_time(view, gather, compensate, found[gather])
                 shown += [row] if row else []
-        # Of each gather, the image of the most VPLs stands beside those at equal time.
+        # The image of the most VPLs of each gather stands beside those at equal time.
         most = [rows[-1] for rows in found.values() if rows]
         if shown + most:
             add_pictures(context, view, shown + most)

@@ -48,7 +48,9 @@ def run(context: Context) -> None:
         context.pictures[view.name] = {
             "images": shown,
             "overlays": dots(context, view) + cuts,
-            "contributions": pipeline.contributions(context.runner, view, c, 1),
+            "contributions": pipeline.contributions(
+                context.runner, view, c, 1, view.scene.film(min(80, plan["width"] // 2))
+            ),
         }
 
 
@@ -128,7 +130,7 @@ def dots(context: Context, view: View) -> list[dict[str, Any]]:
                 "--dot",
                 3,
                 "--size",
-                view.scene.film(640),
+                view.scene.film(min(640, 4 * context.size["pictures"]["width"])),
             ],
             {"v": kept["v.vpl"], "scene": ROOT / view.file},
             ["dots.png"],
