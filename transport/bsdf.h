@@ -100,9 +100,6 @@ class Bsdf {
     }
     return bound + glossy;
   }
-  Vec3 glossyAxis() const {  // unit; the mirror image of wo, the axis of glossy lobes
-    return frameCount_ > 0 ? frames_[0].mirrorAxis() : reflect(point_.wo, point_.ns);
-  }
 
   // Samples a direction. Returns false if the path is absorbed.
   bool sample(LobeGroup group, TransportMode transport, Rng& rng, BsdfSample& out) const;

@@ -59,7 +59,7 @@ COMMANDS = [
     Command(
         "place",
         "vpl-place",
-        "{scene} -n 10k -o {out}/c.vpl --depfile {out}/c.d --stats {out}/c.json",
+        "{scene} -n 4k -o {out}/c.vpl --depfile {out}/c.d --stats {out}/c.json",
         ("c.vpl", "c.d", "c.json"),
     ),
     Command(
@@ -71,7 +71,7 @@ COMMANDS = [
     Command(
         "estimate",
         "vpl-estimate",
-        "{scene} {made}/v.vpl --photons 50k -o {out}/l.vpl --depfile {out}/l.d --stats "
+        "{scene} {made}/v.vpl --photons 20k -o {out}/l.vpl --depfile {out}/l.d --stats "
         "{out}/l.json",
         ("l.vpl", "l.d", "l.json"),
     ),
@@ -85,13 +85,13 @@ COMMANDS = [
     Command(
         "path",
         "vpl-render",
-        "{scene} --integrator path --spp 8 -o {out}/p.exr --png {out}/p.png --depfile {out}/p.d",
+        "{scene} --integrator path --spp 4 -o {out}/p.exr --png {out}/p.png --depfile {out}/p.d",
         ("p.exr", "p.png", "p.d"),
     ),
     Command(
         "shard",
         "vpl-estimate",
-        "{scene} {made}/v.vpl --photons 50k --shard 1/2 -o {out}/s.shard --depfile {out}/s.d "
+        "{scene} {made}/v.vpl --photons 20k --shard 1/2 -o {out}/s.shard --depfile {out}/s.d "
         "--stats {out}/s.json",
         ("s.shard", "s.d", "s.json"),
     ),
@@ -111,7 +111,7 @@ COMMANDS = [
     Command(
         "plot",
         "vpl-inspect",
-        "plot {made}/l.vpl --scene {scene} --size 160x120 -o {out}/d.png --depfile {out}/d.d "
+        "plot {made}/l.vpl --scene {scene} --size 80x60 -o {out}/d.png --depfile {out}/d.d "
         "--stats {out}/d.json",
         ("d.png", "d.d", "d.json"),
     ),

@@ -105,8 +105,10 @@ def compare(
 
     # Most copies are the same scene down to rounding, whose images of a seed are the same.
     same = traced(2 * options.spp, 1)
-    if isinstance(same, str) or np.allclose(*same, rtol=ROUNDING, atol=1e-9):
-        return same if isinstance(same, str) else ""
+    if isinstance(same, str):
+        return same
+    if np.allclose(same[0], same[1], rtol=ROUNDING, atol=1e-9):
+        return ""
     pairs = []
     for seed in range(1, options.seeds + 1):
         pair = traced(options.spp, seed)

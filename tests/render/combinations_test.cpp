@@ -74,7 +74,8 @@ TEST(CombinationsOnGloss, EveryGatherWithSpheres) {
   for (const GatherMethod* gather : gatherMethods()) {
     const auto ours = kitchen.indirect(with({{"gather", std::string(gather->name)}}, rest));
     ASSERT_TRUE(ours.has_value()) << gather->name;
-    EXPECT_NEAR(*ours / all, 1.0, 0.15) << gather->name;
+    const double tolerance = gather->gatherFilter ? 0.25 : 0.15;  // the film is as small as filters
+    EXPECT_NEAR(*ours / all, 1.0, tolerance) << gather->name;
   }
 }
 

@@ -240,5 +240,34 @@ TEST(PixelFilter, TilesAgreeWithPathsAndPlainSamples) {
                {{"gather", "all"}, {"control", "none"}, {"reuse", "1"}, {"allocate", "off"}}))));
 }
 
+// A direct sample in the filter's negative lobes that meets the lamp outweighs all others of a
+// tile. The tile's cut does not take it for negative light, against which every cluster would
+// matter.
+TEST(PixelFilter, CutsOfTilesBesideALampAreAsLargeAsOthers) {
+  Scene scene = room(48, 48);
+  Bounds lamp;
+  for (const Triangle& t : scene.triangles) {
+    if (isBlack(scene.materials[t.material].emission)) continue;
+    for (const uint32_t corner : t.position) lamp.extend(scene.positions[corner]);
+  }
+  scene.camera.forward = normalize(lamp.center() - scene.camera.position);
+  scene.camera.up = cross(scene.camera.right, scene.camera.forward);
+  World world(std::move(scene));
+  const VplTable lit =
+      litVpls(world, {{"count", "300"}}, {{"photons", "50k"}, {"emit-points", "1"}});
+  for (const float degrees : {10.0f, 20.0f}) {
+    world.scene.camera.verticalFovRad = degrees * kPi / 180.0f;
+    for (const char* seed : {"1", "2", "3", "4"}) {
+      const Given options{{"filter", "mitchell"},
+                          {"spp", "16"},
+                          {"compensate", "none"},
+                          {"seed", seed},
+                          {"layers", "cutsize"}};
+      const std::vector<float> size = *renderVpls(world, lit, options).image.find("cutsize");
+      EXPECT_LT(*std::ranges::max_element(size), 0.5f * static_cast<float>(lit.size()));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace bnvpl::test

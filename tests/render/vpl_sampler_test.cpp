@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <map>
 #include <set>
@@ -81,6 +82,49 @@ TEST(VplSampler, ProbabilitiesAreRight) {
 
 TEST(VplSampler, ProbabilitiesAreRightForLobes) {
   for (const size_t count : {2u, 40u, 500u}) requireRightProbabilities(count, true);
+}
+
+// A rough coat with a normal of its own mirrors the viewer towards one of two VPLs, which are alike
+// for the base.
+TEST(VplSampler, CoatsAreBoundedAboutTheirOwnAxis) {
+  Scene scene = withMaterial(false);
+  MetallicRoughnessModel coated;
+  coated.baseColour = Colour(Vec3(0.0f));
+  coated.metallic = Scalar(0.0f);
+  coated.clearcoat = Scalar(1.0f);
+  coated.clearcoatRoughness = Scalar(0.6f);
+  scene.materials[0].model = coated;
+  const Vec3 tilt = normalize(Vec3{0.4f, 0, 1}), wo{0, 0, 1};
+  const Vec3 mirrored = 2.0f * dot(tilt, wo) * tilt - wo, other{-mirrored.x, 0, mirrored.z};
+  VplLights lights;
+  for (const Vec3 to : {mirrored, other}) {
+    lights.position.push_back(to);
+    lights.normal.push_back(-to);
+    lights.intensity.push_back(Vec3(1.0f));
+    lights.size2.push_back(1e-6f);
+  }
+  SurfacePoint at;
+  at.ng = at.ns = {0, 0, 1};
+  at.coat = tilt, at.wo = wo, at.material = 0;
+  const Bsdf bsdf(scene, at);
+  const LightTree tree = buildLightTree(lights, 1);
+  const VplSampler sampler(tree);
+  const VplSampler::Point point(sampler, bsdf);
+  std::array<double, 2> light{}, probability{};
+  for (uint32_t i : {0u, 1u}) {
+    VplTransfer c;
+    ASSERT_TRUE(unoccludedTransfer(lights, i, bsdf, c));
+    light[i] = double{mean(c.transfer)};
+  }
+  Rng rng(1, 2);
+  for (const float u : {0.01f, 0.99f}) {
+    const auto draw = point.draw(u, rng);
+    ASSERT_TRUE(draw.has_value());
+    probability[draw->vpl] = double{draw->probability};
+  }
+  const double share = light[0] / (light[0] + light[1]);
+  ASSERT_GT(share, 0.8);
+  EXPECT_NEAR(probability[0], share, 0.15);
 }
 
 TEST(VplSampler, WithoutVplsAllIsDark) {

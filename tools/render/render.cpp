@@ -67,9 +67,9 @@ bool sendsPhotons(const Values& options) {
 Given withDenoiserOptions(const Given& given) {
   const Values options = resolve(renderSpec(), given);
   if (!options[kForDenoiserOption]) return given;
-  if (gatherFilterOf(options)) {
+  if (const GatherMethod* gather = gatherOf(options); gather && gather->tiesPixels()) {
     throw UsageError("--for-denoiser: --gather " + options[kGatherSlot] +
-                     " shares light between neighbouring pixels; choose another gather");
+                     " gives neighbouring pixels the same noise; choose another gather");
   }
   const CompensateMethod* compensate = compensationOf(options);
   if (compensate && compensate->sharesPixels) {

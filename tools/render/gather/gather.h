@@ -93,12 +93,14 @@ struct GatherMethod {
   GatherFilter (*gatherFilter)(const Values&) = nullptr;
   bool lightGroups = true;  // fills TileReceivers::groupSums
   bool pixelSum = false;    // treats all samples of a pixel as one, with their weights
+  bool sharesDraws = false;  // pixels have the same random VPLs, and so the same noise
 
+  bool tiesPixels() const { return gatherFilter || sharesDraws; }
   // Options that vpl-render refuses beside the method.
   std::vector<std::string_view> refuses() const {
     std::vector<std::string_view> refused;
     if (pixelSum) refused.push_back("--control vpls");
-    if (gatherFilter) refused.push_back("--for-denoiser");
+    if (tiesPixels()) refused.push_back("--for-denoiser");
     if (!lightGroups) refused.push_back("--layers light_groups");
     return refused;
   }

@@ -37,11 +37,11 @@ Columns Columns::inRows(std::span<const size_t> rows) const {
 }
 
 Columns columnsAt(const GatherInputs& in, std::span<const SurfacePoint> receivers,
-                  std::string_view phase) {
+                  std::string_view phase, std::string_view count) {
   requireMemory(double{sizeof(Vec3)} * double(in.vpls.size()) * double(receivers.size()),
                 "the matrix of " + std::to_string(receivers.size()) + " rows and " +
                     std::to_string(in.vpls.size()) + " lights of VPLs",
-                "ask for fewer rows, or keep fewer VPLs with vpl-eliminate -n");
+                "lower --" + std::string(count) + ", or keep fewer VPLs with vpl-eliminate -n");
   Columns columns(in.vpls.size(), receivers.size());
   const auto running = in.progress.beginPhase(phase, receivers.size());
   parallelFor(receivers.size(), 1, [&](size_t row) {

@@ -26,6 +26,7 @@ class Columns {
       : entries_(3 * rows), values_(columns * entries_), norms_(columns) {}
 
   size_t size() const { return norms_.size(); }
+  size_t rows() const { return entries_ / 3; }
   std::span<const float> operator[](size_t i) const {
     return std::span(values_).subspan(i * entries_, entries_);
   }
@@ -53,9 +54,10 @@ inline std::vector<PlanCount> entriesOf(size_t rows, size_t columns) {
 }
 
 // Evaluates the rows of these receivers, one shadow ray for each VPL that can light it. Progress
-// counts rows. Throws MemoryError if they do not fit.
+// counts rows. Throws MemoryError, which names the option `count` of their number, if they do not
+// fit.
 Columns columnsAt(const GatherInputs& in, std::span<const SurfacePoint> receivers,
-                  std::string_view phase);
+                  std::string_view phase, std::string_view count);
 
 using Cluster = std::vector<uint32_t>;
 

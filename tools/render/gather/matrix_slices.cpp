@@ -1,9 +1,12 @@
 #include "tools/render/gather/matrix_slices.h"
 
+#include <tbb/global_control.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
+#include "core/memory.h"
 #include "core/parallel.h"
 #include "core/random_streams.h"
 
@@ -96,7 +99,7 @@ Columns rowsAbout(const Placed& slice, const std::vector<Placed>& slices, size_t
   std::iota(order.begin(), order.end(), size_t{0});
   std::ranges::stable_sort(order, {},
                            [&](size_t k) { return squaredDistance(slice.at, slices[k].at); });
-  return columns.inRows(std::span(order).first(std::min(order.size(), count)));
+  return columns.inRows(std::span(order).first(count));
 }
 
 // Sets the probabilities, up to a factor, with which the VPLs of a cluster stand for it. `all` has
@@ -120,37 +123,56 @@ size_t SlicePlan::sliceOf(const SurfacePoint& point) const {
   return node->slice;
 }
 
-SlicePlan makeSlicePlan(const GatherInputs& in, const Values& options) {
-  SlicePlan plan;
-  std::vector<SurfacePoint> film = in.filmPoints().points;
-  std::erase_if(film, [](const SurfacePoint& p) { return p.triangle == kNone; });
-  if (film.empty()) return plan;
+namespace {
+
+void sliceFilm(const std::vector<SurfacePoint>& film, size_t slices, Rng& rng, SlicePlan& plan) {
   Bounds seen;
   for (const SurfacePoint& p : film) seen.extend(p.position);
   plan.scale = mean(seen.upper - seen.lower) / 8.0f;
   std::vector<Placed> points;
+  points.reserve(film.size());
   for (const SurfacePoint& p : film) points.push_back({placeOf(p, plan.scale), p});
+  slice(points, std::max<size_t>(1, points.size() / slices), 0, rng, plan);
+}
+
+}  // namespace
+
+SlicePlan makeSlicePlan(const GatherInputs& in, const Values& options) {
+  SlicePlan plan;
+  std::vector<SurfacePoint> film = in.filmPoints().points;
+  std::erase_if(film, [](const SurfacePoint& p) { return p.triangle == kNone; });
+  if (in.vpls.size() == 0) return plan;
   const uint64_t key = streamKey(in.seed, RandomStream::LightTree) + 1;
   Rng rng(key, 0);
   plan.nodes.resize(1);
-  slice(points, std::max<size_t>(1, points.size() / options[kSlicesOption]), 0, rng, plan);
-
+  if (film.empty()) {
+    plan.slices.resize(1);  // for samples between the film's points
+  } else {
+    sliceFilm(film, options[kSlicesOption], rng, plan);
+  }
   std::vector<SurfacePoint> rows;
-  for (const Placed& s : plan.slices) rows.push_back(s.point);
-  const Columns columns = columnsAt(in, rows, "slices");
-  if (columns.size() == 0) return plan;
+  for (const Placed& s : plan.slices) {
+    if (s.point.triangle != kNone) rows.push_back(s.point);
+  }
+  const Columns columns = columnsAt(in, rows, "slices", kSlicesOption.name);
   const auto count = static_cast<size_t>(options[kColumnsOption]);
   const std::vector<Cluster> common = clustersOfSeenAndUnseen(
       columns, static_cast<size_t>(std::ceil(kCommonShare * double(count))), rng);
   const std::vector<double> byAllRows = sharesOf(in.vpls, columns);
-  const bool everyVpl = count >= columns.size();  // also those whose columns have one direction
+  // Whether VPLs whose columns have one direction are split, too.
+  const bool splitsAll = count >= columns.size() || rows.empty();
   plan.draws.resize(plan.slices.size());
+  const size_t neighbours = std::min<size_t>(options[kNeighbourSlicesOption], columns.rows());
+  const auto threads =
+      double(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+  requireMemory(threads * double(columns.size()) * (12.0 * double(neighbours) + 16.0),
+                "the columns of neighbouring slices, for each thread",
+                "lower --neighbour-slices, or keep fewer VPLs with vpl-eliminate -n");
   parallelFor(plan.slices.size(), 1, [&](size_t s) {
     Rng own(key, s + 1);
-    const Columns local =
-        rowsAbout(plan.slices[s], plan.slices, options[kNeighbourSlicesOption], columns);
+    const Columns local = rowsAbout(plan.slices[s], plan.slices, neighbours, columns);
     const std::vector<Cluster> clusters = refinedClusters(
-        common, count, local, everyVpl, [&](Cluster& c) { return splitOff(c, local); });
+        common, count, local, splitsAll, [&](Cluster& c) { return splitOff(c, local); });
     std::vector<double> shares(columns.size());
     for (const Cluster& cluster : clusters) {
       setShares(cluster, local, byAllRows, shares);

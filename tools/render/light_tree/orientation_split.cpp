@@ -23,11 +23,12 @@ struct Bucket {
     bounds.extend(other.bounds);
     intensity += other.intensity;
   }
-  float cost() const {
-    if (!(intensity > 0.0f)) return 0.0f;
+  // A product that exceeds floats in large or bright scenes.
+  double cost() const {
+    if (!(intensity > 0.0f)) return 0.0;
     const Vec3 e = bounds.extent();
-    const float area = 2.0f * (e.x * e.y + e.y * e.z + e.z * e.x);
-    return intensity * area * directions();
+    const double x{e.x}, y{e.y}, z{e.z};
+    return double{intensity} * 2.0 * (x * y + y * z + z * x) * double{directions()};
   }
   // Measure of the directions into which the cone of diffuse emitters shines, weighted by cosine
   // beyond the cone itself (the paper's M_Omega with theta_e a right angle), sr.
@@ -42,7 +43,7 @@ struct Bucket {
 };
 
 struct Plane {
-  float cost = INFINITY;
+  double cost = INFINITY;
   size_t axis = 0, bucket = 0;  // buckets up to this one come first
 };
 
@@ -52,8 +53,8 @@ size_t bucketOf(const Bounds& box, Vec3 p, size_t axis) {
   return std::min(kBuckets - 1, static_cast<size_t>(along * float(kBuckets)));
 }
 
-Plane bestPlane(const std::array<Bucket, kBuckets>& buckets, size_t axis, float elongation) {
-  std::array<float, kBuckets> above{};  // cost of the buckets above each
+Plane bestPlane(const std::array<Bucket, kBuckets>& buckets, size_t axis, double elongation) {
+  std::array<double, kBuckets> above{};  // cost of the buckets above each
   Bucket sum;
   for (size_t b = kBuckets - 1; b > 0; --b) {
     sum.add(buckets[b]);
@@ -63,8 +64,8 @@ Plane bestPlane(const std::array<Bucket, kBuckets>& buckets, size_t axis, float 
   sum = {};
   for (size_t b = 0; b + 1 < kBuckets; ++b) {
     sum.add(buckets[b]);
-    const float below = sum.intensity > 0.0f ? sum.cost() : INFINITY;
-    const float cost = elongation * (below + above[b]);
+    const double below = sum.intensity > 0.0f ? sum.cost() : INFINITY;
+    const double cost = elongation * (below + above[b]);
     if (cost < best.cost) best = {cost, axis, b};
   }
   return best;
@@ -85,7 +86,7 @@ size_t splitByOrientation(const VplLights& vpls, std::span<uint32_t> cluster) {
       buckets[bucketOf(box, p, axis)].add({{p, p}, {vpls.normal[i]}, mean(vpls.intensity[i])});
     }
     // Thin slices cost more (the paper's K_r).
-    const Plane plane = bestPlane(buckets, axis, maxComponent(extent) / extent[axis]);
+    const Plane plane = bestPlane(buckets, axis, double{maxComponent(extent) / extent[axis]});
     if (plane.cost < best.cost) best = plane;
   }
   if (!(best.cost < INFINITY)) return 0;

@@ -20,8 +20,10 @@ std::array<float, 4> store(__m128 v) {
   return out;
 }
 
+}  // namespace
+
 // From a point to four spheres.
-struct SphereDirections {
+struct VplSampler::SphereDirections {
   __m128 x, y, z;               // unit, to the centres
   __m128 cosSphere, sinSphere;  // half of the angle that each subtends
   __m128 radius2, d2;           // squared radii, squared distances of the centres
@@ -31,8 +33,6 @@ struct SphereDirections {
                          cosSubClamped(ax * x + ay * y + az * z, cosSphere, sinSphere));
   }
 };
-
-}  // namespace
 
 VplSampler::VplSampler(const LightTree& tree) {
   if (tree.nodes.empty()) return;
@@ -123,12 +123,20 @@ VplSampler::Lanes VplSampler::Point::likelyOf(uint32_t node) const {
     value =
         all(value_.x) * load(f.red) + all(value_.y) * load(f.green) + all(value_.z) * load(f.blue);
   } else {
-    // Glossy lobes are bounded by the cosine to their axis.
-    const Vec3 axis = bsdf_.glossyAxis();
-    const Lanes toAxis = store(to.most(all(axis.x), all(axis.y), all(axis.z)));
+    // Glossy lobes are bounded by the cosine to their axis; those over a normal of their own, such
+    // as a coat's, have another.
+    Vec3 known;
+    Lanes cosines{};
+    const auto cosinesTo = [&](Vec3 axis) -> const Lanes& {
+      if (axis != known) {
+        known = axis;
+        cosines = store(to.most(all(axis.x), all(axis.y), all(axis.z)));
+      }
+      return cosines;
+    };
     alignas(16) Lanes sums;
     for (size_t lane = 0; lane < 4; ++lane) {
-      const Vec3 v = bsdf_.roughUpperBound(1.0f, [&](Vec3) { return toAxis[lane]; });
+      const Vec3 v = bsdf_.roughUpperBound(1.0f, [&](Vec3 axis) { return cosinesTo(axis)[lane]; });
       sums[lane] = v.x * f.red[lane] + v.y * f.green[lane] + v.z * f.blue[lane];
     }
     value = load(sums);

@@ -52,6 +52,7 @@ class VplSampler {
   };
 
  private:
+  struct SphereDirections;
   struct alignas(16) Node4 {
     Lanes x{}, y{}, z{};              // centres of the spheres about the boxes
     Lanes radius2{};                  // squared radii of the spheres

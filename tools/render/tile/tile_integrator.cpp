@@ -100,7 +100,9 @@ void TileIntegrator::gatherVpls(const TileSamples& tile, const ShadingPoints& po
   if (allocation.marginalCost > 0.0) {
     // floorLight and medianLight are squares summed over the channels. For grey light of square q
     // the sum of the channels is sqrt(3 q).
-    receivers.otherLight = meanDirect.x + meanDirect.y + meanDirect.z +
+    // The mean may be negative where the pixel filter is, or no number where a sample is none.
+    const float direct = meanDirect.x + meanDirect.y + meanDirect.z;
+    receivers.otherLight = (std::isfinite(direct) ? std::max(0.0f, direct) : 0.0f) +
                            static_cast<float>(std::sqrt(3.0 * allocation.floorLight));
     receivers.medianTileLight = static_cast<float>(std::sqrt(3.0 * allocation.medianLight));
   }

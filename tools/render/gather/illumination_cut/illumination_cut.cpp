@@ -5,6 +5,7 @@
 
 #include "tools/render/gather/illumination_cut/pair_plan.h"
 #include "tools/render/gather/rgb_sum.h"
+#include "tools/render/gather/single_vpl.h"
 
 namespace bnvpl::methods::gather::illumination_cut {
 
@@ -22,7 +23,17 @@ constexpr std::array kCounters{
     Counter{"sharedpairs", "pairs with shared visibility",
             "pairs for which the film's points decided that they are seen"}};
 
+// The light of all VPLs, for samples of a film whose points all miss the scene.
+Gathered gatherAll(const GatherInputs& in, const Bsdf& bsdf) {
+  Gathered out;
+  const ShadowTest test(in.accel, in.vpls, bsdf);
+  for (size_t i = 0; i < in.vpls.size(); ++i) test.add(i, 1.0f, out);
+  out.cut = static_cast<uint32_t>(in.vpls.size());
+  return out;
+}
+
 Gathered gatherPairs(const GatherInputs& in, const PairPlan& plan, const Bsdf& bsdf) {
+  if (plan.tree.nodes.empty()) return gatherAll(in, bsdf);
   Gathered out;
   RgbSum total, clamped;
   const Vec3 from = in.accel.offsetOrigin(bsdf.point().position, bsdf.point().ng);
@@ -66,6 +77,7 @@ const GatherMethod method{
     .options = kOptions,
     .make = make,
     .counters = kCounters,
-    .lightGroups = false};
+    .lightGroups = false,
+    .sharesDraws = true};
 
 }  // namespace bnvpl::methods::gather::illumination_cut

@@ -20,6 +20,8 @@ constexpr size_t kImageClusters = 100, kImageReceivers = 16;
 constexpr double kFloor = 0.01;
 // Pairs from which the threads begin, and receivers up to which each traces a ray.
 constexpr size_t kStarts = 2000, kTraced = 8;
+// Bytes of a pixel while the plan is made, two nodes included, and of a pair while all are sorted.
+constexpr double kBytesPerPoint = 430.0, kBytesPerPair = 40.0;
 
 class PairPlanner {
  public:
@@ -40,7 +42,10 @@ class PairPlanner {
     }
     std::vector<std::vector<Found>> found(starts.size());
     parallelFor(starts.size(), 1, [&](size_t k) { refine(starts[k], found[k]); });
-    for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());
+    for (auto& part : found) {
+      all.insert(all.end(), part.begin(), part.end());
+      part = {};
+    }
     std::ranges::stable_sort(all, {}, [](const Found& f) { return f.receivers; });
     plan_.begin.assign(plan_.tree.nodes.size() + 1, 0);
     for (const Found& f : all) {
@@ -65,6 +70,9 @@ class PairPlanner {
   const SurfacePoint& receiver(size_t k) const { return points_[plan_.tree.order[k]]; }
 
   void placeReceivers() {
+    const Film& film = scene().film;
+    requireMemory(kBytesPerPoint * double(film.width) * double(film.height),
+                  "the points of --gather illumination-cut", "choose a smaller --size");
     points_ = in_.filmPoints().points;
     std::erase_if(points_, [](const SurfacePoint& p) { return p.triangle == kNone; });
     std::vector<ReceiverBsdf> bsdfs(points_.size());
@@ -76,14 +84,20 @@ class PairPlanner {
   }
 
   // Light of a receiver from a coarse cut, channels added.
-  float estimateAt(const SurfacePoint& point, const std::vector<uint32_t>& cut) const {
+  float estimateAt(const SurfacePoint& point, const std::vector<uint32_t>& cut,
+                   bool shadows) const {
     const Bsdf bsdf(scene(), point);
     const ShadowTest test(in_.accel, in_.vpls, bsdf);
     Gathered out;
     for (const uint32_t c : cut) {
       const LightNode& n = in_.tree.nodes[c];
-      test.add(n.representative, mean(n.intensity) / mean(in_.vpls.intensity[n.representative]),
-               out);
+      const float weight = mean(n.intensity) / mean(in_.vpls.intensity[n.representative]);
+      VplTransfer t;
+      if (shadows) {
+        test.add(n.representative, weight, out);
+      } else if (unoccludedTransfer(in_.vpls, n.representative, bsdf, t)) {
+        addTransfer(in_.vpls, n.representative, t, weight, {}, out);
+      }
     }
     rays_.fetch_add(out.shadowRays, std::memory_order_relaxed);
     return out.radiance.x + out.radiance.y + out.radiance.z;
@@ -104,13 +118,19 @@ class PairPlanner {
         below.push_back(nodes[i].left), below.push_back(nodes[i].right);
       }
     }
-    parallelFor(groups.size(), 4, [&](size_t k) {
-      const ReceiverNode& n = nodes[groups[k]];
-      least_[groups[k]] = estimateAt(receiver((n.begin + n.end) / 2), cut);
-    });
-    double sum = 0.0;
-    for (const uint32_t g : groups) sum += double{least_[g]} * (nodes[g].end - nodes[g].begin);
-    const auto floor = static_cast<float>(kFloor * sum / double(points_.size()));
+    // The mean light of the receivers. It sets the light of each group.
+    const auto estimate = [&](bool shadows) {
+      parallelFor(groups.size(), 4, [&](size_t k) {
+        const ReceiverNode& n = nodes[groups[k]];
+        least_[groups[k]] = estimateAt(receiver((n.begin + n.end) / 2), cut, shadows);
+      });
+      double sum = 0.0;
+      for (const uint32_t g : groups) sum += double{least_[g]} * (nodes[g].end - nodes[g].begin);
+      return sum / double(points_.size());
+    };
+    const double seen = estimate(true);
+    // Where nothing is seen, or only through a slit, the light without shadows is the scale.
+    const auto floor = static_cast<float>(seen > 0.0 ? kFloor * seen : estimate(false));
     for (const uint32_t g : groups) least_[g] = std::max(floor, least_[g]);
     // Groups hand their value down, and the least of their values up; children stand behind.
     for (size_t i = 0; i < nodes.size(); ++i) {
@@ -129,10 +149,12 @@ class PairPlanner {
     const auto [r, l] = pair;
     const ReceiverNode& receivers = plan_.tree.nodes[r];
     const LightNode& lights = in_.tree.nodes[l];
-    // A single VPL represents itself without an error.
-    if (lights.leaf()) {
+    const double allowed = options_.error * double{least_[r]};
+    const double bound = lights.leaf() ? 0.0 : double{pairBound(lights, receivers, nullptr)};
+    const bool black = bound == 0.0 && allowed == 0.0 && options_.error > 0.0;
+    if (lights.leaf()) {  // a single VPL represents itself without an error
       found.push_back({r, {l, false}});
-    } else if (double{pairBound(lights, receivers, nullptr)} < options_.error * double{least_[r]}) {
+    } else if (bound < allowed || black) {
       decideVisibility(r, l, found);
     } else if (!receivers.leaf() && receivers.bounds.diagonal() > lights.bounds.diagonal()) {
       open({receivers.right, l}), open({receivers.left, l});
@@ -153,10 +175,9 @@ class PairPlanner {
       if (found.size() < checked + kUncheckedPairs) continue;
       const uint64_t more = found.size() - checked;
       checked = found.size();
-      // The end copies as many again.
       const uint64_t all = pairs_.fetch_add(more, std::memory_order_relaxed) + more;
-      requireMemory(double(sizeof(Found) * all), "pairs of points and clusters",
-                    "raise --error, or render fewer pixels at a time");
+      requireMemory(kBytesPerPair * double(all), "pairs of points and clusters",
+                    "raise --error, or choose a smaller --size");
     }
   }
 

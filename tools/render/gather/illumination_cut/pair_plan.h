@@ -21,7 +21,7 @@ struct LightPair {
 struct PairPlan {
   ReceiverTree tree;            // holds the film's points
   float normalScale = 1.0f;     // scale of normals in the tree
-  std::vector<uint32_t> begin;  // range of each node's pairs; has one entry more
+  std::vector<uint64_t> begin;  // range of each node's pairs; has one entry more
   std::vector<LightPair> pairs;
   uint64_t rays = 0;  // shadow rays that the plan took
 
@@ -31,7 +31,7 @@ struct PairPlan {
   void forEachPair(const SurfacePoint& at, const Fn& fn) const {
     if (tree.nodes.empty()) return;
     for (uint32_t node = 0;;) {
-      for (uint32_t k = begin[node]; k < begin[node + 1]; ++k) fn(pairs[k]);
+      for (uint64_t k = begin[node]; k < begin[node + 1]; ++k) fn(pairs[k]);
       const ReceiverNode& n = tree.nodes[node];
       if (n.leaf()) return;
       node = coordinate(at, n.axis, normalScale) < n.middle ? n.left : n.right;

@@ -19,6 +19,39 @@ TEST(Lie, HasTheEnergyOfAllVpls) {
 
 TEST(Lie, WithoutClassesItIsTheSumOverAll) { expectSumOverAll("lie", {{"class-rays", "0"}}); }
 
+// VPLs that few points of a cell face may face none that is drawn; the cells within it decide anew.
+// The front of a board is less than a pixel high, and only its points face the red VPL. Cells are
+// divided for the green one, which a leaf hides from some.
+TEST(Lie, VplsThatFewPointsFaceAreNotLost) {
+  Scene scene;
+  addSquare(scene, {-2, 0, 0}, {4, 0, 0}, {0, 0, -4}, lambert(Vec3(0.7f)));
+  addSquare(scene, {-2, -0.02f, 0}, {4, 0, 0}, {0, 0.02f, 0}, lambert(Vec3(0.7f)));
+  addSquare(scene, {-0.3f, 0.7f, -0.7f}, {0.6f, 0, 0}, {0, 0, -0.6f}, lambert(Vec3(0.7f)));
+  finishScene(scene);
+  scene.camera.position = {0, 2.0f, 2.5f};
+  scene.camera.forward = normalize(Vec3{0, -2.0f, -3.5f});
+  scene.camera.up = cross(scene.camera.right, scene.camera.forward);
+  scene.film = {96, 96};
+  const World world(std::move(scene));
+  VplTable lit;
+  lit.position = lit.emitPosition = {{0.3f, -0.01f, 2.0f}, {0, 1.2f, -1.0f}};
+  lit.normal = lit.emitNormal = {{0, 0, -1}, {0, -1, 0}};
+  lit.flux = {{1, 0, 0}, {0, 1, 0}};
+  lit.albedo = {Vec3(1.0f), Vec3(1.0f)};
+  lit.firstBounceFlux = {Vec3{}, Vec3{}};
+  lit.radius = {0.01f, 0.01f};
+  const auto light = [&](const char* rays) {
+    double red = 0.0;
+    for (const char* seed : {"1", "2", "3", "4", "5", "6", "7", "8"}) {
+      const Given options{{"gather", "lie"}, {"only", "indirect"}, {"class-rays", rays}};
+      const Given all = with(with(kPlainRender, options), {{"seed", seed}});
+      red += meanOfLayer(renderVpls(world, lit, all).image, "R");
+    }
+    return red;
+  };
+  EXPECT_NEAR(light("2") / light("0"), 1.0, 0.02);
+}
+
 TEST(Lie, VisibleAndHiddenVplsNeedNoRays) {
   for (const GatherCase* c : gatherCases()) {
     const FilmStats all = statsOf(c->world, c->lit, {{"class-rays", "0"}}),

@@ -71,7 +71,8 @@ class CellBuilder {
   void placePoints() {
     const Film& size = in_.accel.scene().film;
     const double pixels = double(size.width) * size.height;
-    requireMemory(pixels * double(sizeof(SurfacePoint)), "--gather lie", "choose a smaller --size");
+    requireMemory(pixels * 2.0 * double(sizeof(SurfacePoint)), "--gather lie",
+                  "choose a smaller --size");
     std::vector<SurfacePoint> film = in_.filmPoints().points;
     std::erase_if(film, [](const SurfacePoint& p) { return p.triangle == kNone; });
     Bounds seen;
@@ -151,7 +152,7 @@ class CellBuilder {
         continue;
       }
       append(cell.partial, n);
-      if (sight == Sight::Partial && divided) open.push_back(at);
+      if (divided) open.push_back(at);
     }
     cell.raysEach += static_cast<float>(rays) / static_cast<float>(cell.end - cell.begin);
   }
@@ -164,7 +165,7 @@ class CellBuilder {
   }
 
   // Traces rays between random points of the cell and VPLs of the node until two of them differ.
-  // VPLs that face none of the points are averted: no sample traces rays to them either.
+  // VPLs that face none of the drawn points are averted: few samples trace rays to them, if any.
   Sight sightOf(const LightCell& cell, uint32_t node, uint64_t key, uint64_t& rays) const {
     const LightNode& n = in_.tree.nodes[node];
     const uint64_t enough = raysFor(cell, n);

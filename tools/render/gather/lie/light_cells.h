@@ -27,7 +27,7 @@ struct LightCell {
   uint32_t begin = 0, end = 0;         // range of the film's points
   float raysEach = 0.0f;               // rays that decided here and above, for each point
   std::vector<LightRun> visible;       // decided here; those of the cells above are visible, too
-  std::vector<LightRun> partial;  // undecided here; those that rays found so go on to the children
+  std::vector<LightRun> partial;       // undecided here; they go on to the children
 };
 
 // An octree of the points that the camera sees.

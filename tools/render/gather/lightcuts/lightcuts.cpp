@@ -99,8 +99,11 @@ Gather make(const GatherInputs& in, const Values& options) {
 }  // namespace
 
 extern const GatherMethod method;
-const GatherMethod method{"lightcuts",
-                          "a cut of the light tree for each sample, one VPL for each cluster",
-                          kOptions, make};
+const GatherMethod method{
+    .name = "lightcuts",
+    .summary = "a cut of the light tree for each sample, one VPL for each cluster",
+    .options = kOptions,
+    .make = make,
+    .sharesDraws = true};
 
 }  // namespace bnvpl::methods::gather::lightcuts

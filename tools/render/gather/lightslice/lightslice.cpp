@@ -36,6 +36,7 @@ const GatherMethod method{
     .name = "lightslice",
     .summary = "VPLs clustered for each slice of the visible points, by rows of their matrix",
     .options = kOptions,
-    .make = make};
+    .make = make,
+    .sharesDraws = true};
 
 }  // namespace bnvpl::methods::gather::lightslice

@@ -71,6 +71,7 @@ const GatherMethod method{
     .summary = "few shadow rays of each slice's VPLs; the others completed from known columns",
     .options = kOptions,
     .make = make,
-    .counters = kCounters};
+    .counters = kCounters,
+    .sharesDraws = true};
 
 }  // namespace bnvpl::methods::gather::matrix_completion

@@ -99,13 +99,15 @@ std::vector<bool> VisibilityPrediction::byNearestRows(const Column& column,
   return out;
 }
 
-// Least squares of 1 (visible) and -1 on (x, y, z, 1). A small share of the trace on the diagonal
-// keeps the system regular where the rows lie in a plane.
+// Least squares of 1 (visible) and -1 on (x, y, z, 1), with positions in the size of all rows, so
+// that the scene's unit does not matter. A small share of the trace on the diagonal keeps the
+// system regular where the rows lie in a plane.
 std::vector<bool> VisibilityPrediction::byPlane(const Column& column,
                                                 std::span<const uint32_t> rows) const {
   const Vec3 origin = matrix_.point(column.rows.front()).position;
+  const float scale = size_ > 0.0f ? 1.0f / size_ : 0.0f;
   const auto termsOf = [&](uint32_t row) {
-    const Vec3 d = matrix_.point(row).position - origin;
+    const Vec3 d = (matrix_.point(row).position - origin) * scale;
     return Row4{double{d.x}, double{d.y}, double{d.z}, 1.0};
   };
   std::array<Row4, 4> a{};

@@ -101,7 +101,7 @@ Plan planOf(const GatherInputs& in, const Values& options) {
   Rng rng(streamKey(in.seed, RandomStream::LightTree) + 2, 0);
   const std::vector<SurfacePoint> rows = rowPoints(in.filmPoints(), options[kRowsOption], rng);
   plan.rows = rows.size();
-  const Columns columns = columnsAt(in, rows, "rows");
+  const Columns columns = columnsAt(in, rows, "rows", kRowsOption.name);
   const std::vector<double> shares = sharesOf(in.vpls, columns);
   for (const Cluster& c : clustersOf(columns, options[kColumnsOption], rng, plan.splits))
     plan.draws.add(c, shares, rng);
@@ -126,6 +126,7 @@ extern const GatherMethod method;
 const GatherMethod method{.name = "mrcs",
                           .summary = "matrix row-column sampling: VPLs clustered once for the film",
                           .options = kOptions,
-                          .make = make};
+                          .make = make,
+                          .sharesDraws = true};
 
 }  // namespace bnvpl::methods::gather::mrcs

@@ -172,6 +172,7 @@ const GatherMethod method{
     .options = kOptions,
     .make = make,
     .counters = kCounters,
-    .lightGroups = false};
+    .lightGroups = false,
+    .sharesDraws = true};
 
 }  // namespace bnvpl::methods::gather::paquette
