@@ -116,8 +116,11 @@ class Checkpoints(Workbench):
                     self.assertLessEqual(set(self.left_over()), {"work"}, what)
                     if "was replaced" not in result.err:
                         self.assertEqual(self.states(command)[command.outputs[0]], "old", what)
-                    self.assertEqual(self.run_command(command).code, OK, what)
-                    self.assert_done(command, what)
+                    if FULL or at % 2 == 1:
+                        self.assertEqual(self.run_command(command).code, OK, what)
+                        self.assert_done(command, what)
+                    else:
+                        (self.folder / "work").unlink(missing_ok=True)
                     at += 1 if FULL or at < 6 else self.random.randint(at // 2, at)
                 self.assertGreater(tried, 5)
                 self.say(f"{command.name}: {tried} calls of {call} failed in turn")

@@ -65,7 +65,8 @@ TEST_P(MatrixCompletion, IsTheSameForAnyThreadsAndShards) {
 }
 
 TEST_P(MatrixCompletion, WithAllEntriesAndAColumnForEveryVplItIsAll) {
-  expectSumOverAll("matrix-completion", by({{"entry-share", "1"}, {"columns", "1M"}}));
+  expectSumOverAll("matrix-completion",
+                   by({{"entry-share", "1"}, {"columns", "1M"}, {"slices", "20"}}), {{"spp", "1"}});
 }
 
 // All entries sampled: the VPLs of LightSlice with the same clusters.

@@ -67,7 +67,7 @@ class Builder {
 
   void describe(uint32_t node, std::span<const uint32_t> vpls) {
     OctreeNode n;
-    std::array<double, 10> sums{};  // position, normal, intensity, size
+    std::array<double, 10> sums{};  // position, normal, intensity, squared size
     double weights = 0.0;
     for (const uint32_t i : vpls) {
       const double weight = double{bnvpl::mean(vpls_.intensity[i])};
@@ -76,7 +76,7 @@ class Builder {
         sums[a + 3] += weight * double{vpls_.normal[i][a]};
         sums[a + 6] += double{vpls_.intensity[i][a]};
       }
-      sums[9] += weight * std::sqrt(double{vpls_.size2[i]});
+      sums[9] += weight * double{vpls_.size2[i]};
       weights += weight;
       n.cone = n.bounds.empty() ? NormalCone{vpls_.normal[i]}
                                 : merged(n.cone, NormalCone{vpls_.normal[i]});
@@ -99,8 +99,8 @@ class Builder {
                   float(sums[at + 2] * scale));
     };
     l.position[node] = vec3(0, 1.0 / weights), l.normal[node] = vec3(3, 1.0 / weights);
-    l.intensity[node] = vec3(6, 1.0),
-    l.size2[node] = static_cast<float>(std::pow(sums[9] / weights, 2.0));
+    l.intensity[node] = vec3(6, 1.0);
+    l.size2[node] = static_cast<float>(sums[9] / weights);
   }
 
   const VplLights& vpls_;
