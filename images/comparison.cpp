@@ -3,9 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "images/smape.h"
-#include "images/worst_pixel.h"
-
 namespace bnvpl {
 namespace {
 

@@ -1,4 +1,4 @@
-// All metrics of an image against a reference. Each metric has its own header.
+// All metrics of an image against a reference.
 #pragma once
 
 #include <array>
@@ -8,9 +8,7 @@
 
 #include "images/hdr_flip.h"
 #include "images/image_pair.h"
-#include "images/mean_ratio.h"
-#include "images/relmse.h"
-#include "images/rmse.h"
+#include "images/measures.h"
 
 namespace bnvpl {
 

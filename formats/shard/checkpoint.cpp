@@ -32,11 +32,6 @@ std::optional<bool> beginsAsCheckpoint(const fs::path& file) {
   return start == CheckpointHeader{}.magic;
 }
 
-CheckpointFile readCheckpoint(const fs::path& file) {
-  if (auto found = findCheckpoint(file)) return std::move(*found);
-  throw InputError(file, "no such checkpoint; check the name");
-}
-
 std::optional<CheckpointFile> findCheckpoint(const fs::path& file) {
   const auto damaged = [&](const std::string& what) {
     return InputError(file, what + "; delete it and start again");

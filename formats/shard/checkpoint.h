@@ -32,9 +32,8 @@ struct CheckpointFile {
 // Whether `file` begins like a checkpoint; empty if it cannot be read. Does not throw.
 std::optional<bool> beginsAsCheckpoint(const fs::path& file);
 
-// Throws InputError if the file cannot be read or is damaged, cut short or of another version.
-CheckpointFile readCheckpoint(const fs::path& file);
-// The same; none where there is no such file, as when another run has just removed it.
+// None where there is no such file, as when another run has just removed it. Throws InputError if
+// the file cannot be read or is damaged, cut short or of another version.
 std::optional<CheckpointFile> findCheckpoint(const fs::path& file);
 
 // Replaces `file` atomically. Throws OutputError, and then keeps the old file.

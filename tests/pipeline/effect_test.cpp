@@ -268,7 +268,7 @@ TEST_F(Effect, ACheckpointOfAnotherBuildIsRefused) {
   shell("timeout -s INT 0.5 " BNVPL_BIN_FROM_SOURCE "/vpl-estimate " + command +
         " --checkpoint-every 0");
   if (!fs::exists(at("c.checkpoint"))) GTEST_SKIP() << "done before it was stopped";
-  CheckpointFile file = readCheckpoint(at("c.checkpoint"));
+  CheckpointFile file = *findCheckpoint(at("c.checkpoint"));
   Json run = Json::parse(file.run);
   run["version"] = BNVPL_VERSION "+0123456789ab";
   file.run = run.dump();

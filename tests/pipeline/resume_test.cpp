@@ -135,7 +135,7 @@ TEST_F(ResumeRun, AnotherProcessorIsAnotherRun) {
                                " --photons 1G --checkpoint " + path("c");
   shell("timeout --foreground -s INT 0.5 '" BNVPL_BIN "/vpl-estimate' " + estimate + " --quiet");
   ASSERT_TRUE(fs::exists(at("c")));
-  CheckpointFile saved = readCheckpoint(at("c"));
+  CheckpointFile saved = *findCheckpoint(at("c"));
   const std::string key = "\"processor_id\":\"";
   const size_t id = saved.run.find(key);
   ASSERT_NE(id, std::string::npos) << saved.run;

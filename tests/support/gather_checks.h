@@ -174,7 +174,8 @@ inline void expectSumOverAll(const std::string& gather, const Given& options,
     for (const char* channel : {"R", "G", "B"}) {
       const auto &x = *all.find(channel), &y = *own.find(channel);
       for (size_t i = 0; i < x.size(); ++i)
-        ASSERT_NEAR(y[i], x[i], 1e-4f * (x[i] + 1e-3f)) << c->world.scene.name() << " " << i;
+        ASSERT_NEAR(y[i], x[i], 1e-4f * (std::fabs(x[i]) + 1e-3f))
+            << c->world.scene.name() << " " << i;
     }
   }
 }

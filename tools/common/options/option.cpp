@@ -113,17 +113,9 @@ const MethodEntry& chosen(const MethodSlot& slot, const std::string& name) {
                    didYouMean(name, {names.begin(), names.end()}, "use " + orList(names)));
 }
 
-const std::string* textOf(const Given& given, std::string_view name) {
-  const std::string* text = nullptr;  // the last one wins
-  for (const auto& [key, value] : given) {
-    if (key == name) text = &value;
-  }
-  return text;
-}
-
 void takeOption(const Option& o, const Given& given, Values& values) {
   if (!satisfied(o.needs, values)) return;
-  const std::string* text = textOf(given, o.name);
+  const std::string* text = textGiven(given, o.name);
   if (!text && o.optional) return;
   if (!text && o.defaultText.empty() && o.kind != Option::Kind::Text) {
     throw UsageError("--" + std::string(o.name) + " is required");
@@ -167,7 +159,7 @@ Values resolve(const StageSpec& spec, const Given& given) {
   for (const Option& o : spec.options) takeOption(o, given, known);
   for (const MethodSlot& slot : spec.slots) {
     if (!satisfied(slot.needs, known)) continue;
-    const std::string* text = textOf(given, slot.name);
+    const std::string* text = textGiven(given, slot.name);
     const std::string wanted = text ? *text : std::string(slot.defaultText);
     const MethodEntry& method = chosen(slot, wanted);
     for (Values* v : {&values, &known}) v->set(slot.name, std::string(method.name));

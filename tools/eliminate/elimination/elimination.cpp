@@ -114,8 +114,7 @@ EliminateResult run(const EliminateInputs& in, const Values& options) {
 
 }  // namespace
 
-extern const EliminateMethod method;
-const EliminateMethod method{
+extern const EliminateMethod method{
     "elimination",
     "blue noise: the candidates that are spread best, by weighted sample elimination", kOptions,
     run};

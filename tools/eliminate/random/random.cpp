@@ -47,7 +47,6 @@ EliminateResult run(const EliminateInputs& in, const Values& options) {
 
 }  // namespace
 
-extern const EliminateMethod method;
-const EliminateMethod method{"random", "a random subset, for comparison", kOptions, run};
+extern const EliminateMethod method{"random", "a random subset, for comparison", kOptions, run};
 
 }  // namespace bnvpl::methods::eliminate::random

@@ -136,8 +136,7 @@ EliminateResult run(const EliminateInputs& in, const Values& options) {
 
 }  // namespace
 
-extern const EliminateMethod method;
-const EliminateMethod method{
+extern const EliminateMethod method{
     "rejection",
     "VPLs of vpl-place --method light, accepted by their contribution to the image; about -n",
     kOptions,

@@ -342,9 +342,8 @@ Work work(const VplTable&, const Values& options) { return {"photons", options[k
 
 }  // namespace
 
-extern const EstimateMethod method;
-const EstimateMethod method{"both",
-                            "photons and paths; the better at it counts more in each light path",
-                            kOptions, run, work};
+extern const EstimateMethod method{
+    "both", "photons and paths; the better at it counts more in each light path", kOptions, run,
+    work};
 
 }  // namespace bnvpl::methods::estimate::both

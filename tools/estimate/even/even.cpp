@@ -22,8 +22,7 @@ EstimateResult run(const EstimateInputs& in, const Values& options) {
 
 }  // namespace
 
-extern const EstimateMethod method;
-const EstimateMethod method{
+extern const EstimateMethod method{
     "even", "photons, divided evenly among all VPLs in reach (thesis); leaks through thin walls",
     kPhotonOptions, run, photonWork};
 

@@ -11,9 +11,8 @@ EstimateResult run(const EstimateInputs& in, const Values& options) {
 
 }  // namespace
 
-extern const EstimateMethod method;
-const EstimateMethod method{"guarded",
-                            "photons, to VPLs on compatible surfaces that the hit can see",
-                            kPhotonOptions, run, photonWork};
+extern const EstimateMethod method{"guarded",
+                                   "photons, to VPLs on compatible surfaces that the hit can see",
+                                   kPhotonOptions, run, photonWork};
 
 }  // namespace bnvpl::methods::estimate::guarded

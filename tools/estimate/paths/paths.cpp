@@ -61,8 +61,7 @@ Work work(const VplTable& vpls, const Values& options) {
 
 }  // namespace
 
-extern const EstimateMethod method;
-const EstimateMethod method{"paths", "paths from the surface of each VPL back to the lights",
-                            kOptions, run, work};
+extern const EstimateMethod method{"paths", "paths from the surface of each VPL back to the lights",
+                                   kOptions, run, work};
 
 }  // namespace bnvpl::methods::estimate::paths

@@ -106,8 +106,7 @@ void finish(PlaceResult& result) { result.table.stage = VplStage::Candidates; }
 
 }  // namespace
 
-extern const PlaceMethod method;
-const PlaceMethod method{"camera", "candidates for vpl-eliminate, where camera paths bounce to",
-                         kOptions, make, finish};
+extern const PlaceMethod method{
+    "camera", "candidates for vpl-eliminate, where camera paths bounce to", kOptions, make, finish};
 
 }  // namespace bnvpl::methods::place::camera

@@ -63,8 +63,7 @@ void finish(PlaceResult& result) {
 
 }  // namespace
 
-extern const PlaceMethod method;
-const PlaceMethod method{
+extern const PlaceMethod method{
     "light",
     "instant radiosity: photons from the lights leave VPLs that go straight to vpl-render",
     kOptions,

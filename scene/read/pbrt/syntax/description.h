@@ -45,7 +45,6 @@ struct Shape : Entity {
 
 struct TextureEntity : Entity {
   bool isSpectrum = true;  // else a float texture
-  Affine worldFromTexture;
 };
 
 struct Light : Entity {

@@ -91,7 +91,7 @@ class Parser {
   size_t included_ = 0;
   bool inWorld_ = false;
   Object* object_ = nullptr;  // the object that ObjectBegin opened
-  Place objectPlace_, end_;
+  Place end_;
 };
 
 }  // namespace bnvpl::pbrt

@@ -65,7 +65,7 @@ void Parser::texture(const Token& at) {
   const std::string name = string("a name in quotes"), type = string("spectrum or float");
   if (type != "spectrum" && type != "float")
     failAt(at.place, "texture '" + name + "' must be a \"spectrum\" or \"float\" one");
-  TextureEntity t{entity(at, "texture"), type == "spectrum", now().transform};
+  TextureEntity t{entity(at, "texture"), type == "spectrum"};
   // Spectrum and float textures have separate names.
   if (!out_.textures.try_emplace(type + " " + name, std::move(t)).second)
     failAt(at.place, type + " texture '" + name + "' is there already; choose another name");

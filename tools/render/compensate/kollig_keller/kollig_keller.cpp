@@ -24,8 +24,7 @@ constexpr std::array kCounters{Counter{"continuedrays", "continued rays",
 
 }  // namespace
 
-extern const CompensateMethod method;
-const CompensateMethod method{
+extern const CompensateMethod method{
     .name = "kollig-keller",
     .summary = "paths of rays add all that a bound of one size for all VPLs removes; no bias",
     .options = {},

@@ -87,8 +87,7 @@ Compensation make(const CompensateInputs& in, const Values& options) {
 
 }  // namespace
 
-extern const CompensateMethod method;
-const CompensateMethod method{
+extern const CompensateMethod method{
     .name = "local",
     .summary = "local virtual lights of each block of pixels add what a bound of one size removes",
     .options = kOptions,

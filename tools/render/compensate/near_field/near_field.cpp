@@ -110,8 +110,7 @@ Compensation make(const CompensateInputs& in, const Values&) {
 
 }  // namespace
 
-extern const CompensateMethod method;
-const CompensateMethod method{
+extern const CompensateMethod method{
     "near-field",
     "sampled rays add the light that the clamp removes and that comes from areas without a VPL",
     {},

@@ -9,8 +9,7 @@ Compensation make(const CompensateInputs&, const Values&) { return {}; }
 
 }  // namespace
 
-extern const CompensateMethod method;
-const CompensateMethod method{
+extern const CompensateMethod method{
     "none", "no compensation: clamped light and that of uncovered areas is missing", {}, make};
 
 }  // namespace bnvpl::methods::compensate::none

@@ -138,9 +138,8 @@ Gather make(const GatherInputs& in, const Values& options) {
 
 }  // namespace
 
-extern const GatherMethod method;
-const GatherMethod method{"adaptive-tree",
-                          "clusters split by their variance, a VPL of each drawn by importance",
-                          kOptions, make, kCounters};
+extern const GatherMethod method{
+    "adaptive-tree", "clusters split by their variance, a VPL of each drawn by importance",
+    kOptions, make, kCounters};
 
 }  // namespace bnvpl::methods::gather::adaptive_tree

@@ -38,10 +38,9 @@ Gather make(const GatherInputs& in, const Values&) {
 
 }  // namespace
 
-extern const GatherMethod method;
-const GatherMethod method{.name = "all",
-                          .summary = "all VPLs: the reference for a set of VPLs",
-                          .options = {},
-                          .make = make};
+extern const GatherMethod method{.name = "all",
+                                 .summary = "all VPLs: the reference for a set of VPLs",
+                                 .options = {},
+                                 .make = make};
 
 }  // namespace bnvpl::methods::gather::all

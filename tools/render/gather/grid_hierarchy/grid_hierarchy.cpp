@@ -77,8 +77,7 @@ Gather make(const GatherInputs& in, const Values& options) {
 
 }  // namespace
 
-extern const GatherMethod method;
-const GatherMethod method{
+extern const GatherMethod method{
     .name = "grid-hierarchy",
     .summary = "near VPLs alone, farther ones by lights of ever coarser grids",
     .options = kOptions,

@@ -70,8 +70,7 @@ Gather make(const GatherInputs& in, const Values& options) {
 
 }  // namespace
 
-extern const GatherMethod method;
-const GatherMethod method{
+extern const GatherMethod method{
     .name = "illumination-cut",
     .summary = "pairs of clusters, of the film's points and of VPLs, refined together",
     .options = kOptions,

@@ -112,8 +112,7 @@ Gather make(const GatherInputs& in, const Values& options) {
 
 }  // namespace
 
-extern const GatherMethod method;
-const GatherMethod method{
+extern const GatherMethod method{
     .name = "interleaved",
     .summary = "a subset of the VPLs for each pixel of a pattern, averaged by a filter",
     .options = kOptions,

@@ -70,8 +70,7 @@ Gather make(const GatherInputs& in, const Values& options) {
 
 }  // namespace
 
-extern const GatherMethod method;
-const GatherMethod method{
+extern const GatherMethod method{
     .name = "lie",
     .summary =
         "local illumination environments: cells of space know which VPLs are visible or hidden",

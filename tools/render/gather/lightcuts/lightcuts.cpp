@@ -98,8 +98,7 @@ Gather make(const GatherInputs& in, const Values& options) {
 
 }  // namespace
 
-extern const GatherMethod method;
-const GatherMethod method{
+extern const GatherMethod method{
     .name = "lightcuts",
     .summary = "a cut of the light tree for each sample, one VPL for each cluster",
     .options = kOptions,

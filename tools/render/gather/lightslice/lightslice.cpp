@@ -31,8 +31,7 @@ Gather make(const GatherInputs& in, const Values& options) {
 
 }  // namespace
 
-extern const GatherMethod method;
-const GatherMethod method{
+extern const GatherMethod method{
     .name = "lightslice",
     .summary = "VPLs clustered for each slice of the visible points, by rows of their matrix",
     .options = kOptions,

@@ -65,8 +65,7 @@ Gather make(const GatherInputs& in, const Values& options) {
 
 }  // namespace
 
-extern const GatherMethod method;
-const GatherMethod method{
+extern const GatherMethod method{
     .name = "matrix-completion",
     .summary = "few shadow rays of each slice's VPLs; the others completed from known columns",
     .options = kOptions,

@@ -122,11 +122,11 @@ Gather make(const GatherInputs& in, const Values& options) {
 
 }  // namespace
 
-extern const GatherMethod method;
-const GatherMethod method{.name = "mrcs",
-                          .summary = "matrix row-column sampling: VPLs clustered once for the film",
-                          .options = kOptions,
-                          .make = make,
-                          .sharesDraws = true};
+extern const GatherMethod method{
+    .name = "mrcs",
+    .summary = "matrix row-column sampling: VPLs clustered once for the film",
+    .options = kOptions,
+    .make = make,
+    .sharesDraws = true};
 
 }  // namespace bnvpl::methods::gather::mrcs

@@ -207,13 +207,13 @@ Gather make(const GatherInputs& in, const Values& options) {
 
 }  // namespace
 
-extern const GatherMethod method;
-const GatherMethod method{.name = "multidimensional",
-                          .summary = "a cut of pairs of clusters for each pixel: samples and VPLs",
-                          .options = kOptions,
-                          .make = make,
-                          .counters = kCounters,
-                          .lightGroups = false,
-                          .pixelSum = true};
+extern const GatherMethod method{
+    .name = "multidimensional",
+    .summary = "a cut of pairs of clusters for each pixel: samples and VPLs",
+    .options = kOptions,
+    .make = make,
+    .counters = kCounters,
+    .lightGroups = false,
+    .pixelSum = true};
 
 }  // namespace bnvpl::methods::gather::multidimensional

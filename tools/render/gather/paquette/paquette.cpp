@@ -165,8 +165,7 @@ Gather make(const GatherInputs& in, const Values& options) {
 
 }  // namespace
 
-extern const GatherMethod method;
-const GatherMethod method{
+extern const GatherMethod method{
     .name = "paquette",
     .summary = "nodes of an octree, opened where the light of their VPLs may differ",
     .options = kOptions,

@@ -54,9 +54,8 @@ Gather make(const GatherInputs& in, const Values& options) {
 
 }  // namespace
 
-extern const GatherMethod method;
-const GatherMethod method{"shirley",
-                          "VPLs that are bright in a cell of space, and a few of the dim", kOptions,
-                          make, kCounters};
+extern const GatherMethod method{"shirley",
+                                 "VPLs that are bright in a cell of space, and a few of the dim",
+                                 kOptions, make, kCounters};
 
 }  // namespace bnvpl::methods::gather::shirley

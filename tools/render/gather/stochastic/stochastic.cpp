@@ -90,8 +90,7 @@ Gather make(const GatherInputs& in, const Values& options) {
 
 }  // namespace
 
-extern const GatherMethod method;
-const GatherMethod method{"stochastic", "a small cut for each sample, a random VPL per cluster",
-                          kOptions, make};
+extern const GatherMethod method{
+    "stochastic", "a small cut for each sample, a random VPL per cluster", kOptions, make};
 
 }  // namespace bnvpl::methods::gather::stochastic

@@ -158,8 +158,7 @@ Gather make(const GatherInputs& in, const Values& values) {
 
 }  // namespace
 
-extern const GatherMethod method;
-const GatherMethod method{
+extern const GatherMethod method{
     "tilecuts", "a cut for each tile, a random VPL per cluster for each sample", kOptions, make};
 
 }  // namespace bnvpl::methods::gather::tilecuts

@@ -125,8 +125,7 @@ Gather make(const GatherInputs& in, const Values& options) {
 
 }  // namespace
 
-extern const GatherMethod method;
-const GatherMethod method{
+extern const GatherMethod method{
     .name = "ward",
     .summary = "VPLs sorted by contribution, shadow-tested until the rest is negligible",
     .options = kOptions,

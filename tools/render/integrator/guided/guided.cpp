@@ -109,9 +109,8 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
 
 }  // namespace
 
-extern const IntegratorMethod method;
-const IntegratorMethod method{"guided",
-                              "path guiding: path tracing in directions learned from the VPLs",
-                              kOptions, make, /*needsVpls=*/true};
+extern const IntegratorMethod method{
+    "guided", "path guiding: path tracing in directions learned from the VPLs", kOptions, make,
+    /*needsVpls=*/true};
 
 }  // namespace bnvpl::methods::integrator::guided

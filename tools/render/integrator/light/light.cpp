@@ -30,8 +30,7 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
 
 }  // namespace
 
-extern const IntegratorMethod method;
-const IntegratorMethod method{
+extern const IntegratorMethod method{
     "light",
     "path tracing, with indirect light by light tracing, for scenes where paths hardly find the "
     "lights; takes no VPLs",

@@ -29,7 +29,7 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
 
 }  // namespace
 
-extern const IntegratorMethod method;
-const IntegratorMethod method{"path", "path tracing, the reference; takes no VPLs", kOptions, make};
+extern const IntegratorMethod method{"path", "path tracing, the reference; takes no VPLs", kOptions,
+                                     make};
 
 }  // namespace bnvpl::methods::integrator::path

@@ -180,13 +180,12 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
 
 }  // namespace
 
-extern const IntegratorMethod method;
-const IntegratorMethod method{"vpl",
-                              "direct light by shadow rays, indirect light from VPLs",
-                              kOptions,
-                              make,
-                              /*needsVpls=*/true,
-                              /*tracesPhotons=*/false,
-                              /*gathersVpls=*/true};
+extern const IntegratorMethod method{"vpl",
+                                     "direct light by shadow rays, indirect light from VPLs",
+                                     kOptions,
+                                     make,
+                                     /*needsVpls=*/true,
+                                     /*tracesPhotons=*/false,
+                                     /*gathersVpls=*/true};
 
 }  // namespace bnvpl::methods::integrator::vpl
