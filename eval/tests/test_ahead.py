@@ -2,11 +2,13 @@
 
 import argparse
 import json
+import sys
 import tempfile
 import unittest
 from pathlib import Path
 
-from bnvpl_eval.ahead import run_ahead
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from bnvpl_eval.ahead import run_ahead  # noqa: E402 (after the path that it needs)
 
 # An evaluation that writes down how it was called and on how many processors it may run.
 PROGRAM = """
