@@ -71,7 +71,7 @@ COMMANDS = [
     Command(
         "estimate",
         "vpl-estimate",
-        "{scene} {made}/v.vpl --photons 20k -o {out}/l.vpl --depfile {out}/l.d --stats "
+        "{scene} {made}/v.vpl --photons 50k -o {out}/l.vpl --depfile {out}/l.d --stats "
         "{out}/l.json",
         ("l.vpl", "l.d", "l.json"),
     ),
@@ -91,7 +91,7 @@ COMMANDS = [
     Command(
         "shard",
         "vpl-estimate",
-        "{scene} {made}/v.vpl --photons 20k --shard 1/2 -o {out}/s.shard --depfile {out}/s.d "
+        "{scene} {made}/v.vpl --photons 50k --shard 1/2 -o {out}/s.shard --depfile {out}/s.d "
         "--stats {out}/s.json",
         ("s.shard", "s.d", "s.json"),
     ),
