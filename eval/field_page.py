@@ -74,19 +74,20 @@ def few_vpls(rows: list[Row], scenes: list[str], gathers: list[str]) -> str:
     equal = [r for r in rows if r["at"] == "equal VPLs"]
     count = min(int(r["vpls"]) for r in equal)
     shown = {(r["gather"], r["scene"]): r for r in equal if int(r["vpls"]) == count}
+    spp = next(iter(shown.values()))["spp"]
 
     def cell(gather: str, scene: str) -> str:
         row = shown.get((gather, scene))
-        return f"{value(row)} in {row['render_cpu_s']:.3g} s" if row else "-"
+        return f"{value(row)} ({row['render_cpu_s']:.2g})" if row else "-"
 
     lines = [
-        f"Too slow for this time: {', '.join(gathers)}. With {count:,} VPLs and no compensation, "
-        f"they have this relMSE in these CPU seconds, beside the default:",
+        f"Too slow for this time: {', '.join(gathers)}. Beside the default, with {count:,} VPLs,",
+        f"no compensation and spp {spp} (CPU seconds in brackets; -: beyond the limit):",
         "",
         "| gather | " + " | ".join(scenes) + " |",
         "|---" * (1 + len(scenes)) + "|",
     ]
-    for gather in ["tilecuts", *gathers]:
+    for gather in ["tilecuts", *(g for g in gathers if any((g, s) in shown for s in scenes))]:
         lines.append("| " + " | ".join([gather, *(cell(gather, s) for s in scenes)]) + " |")
     return "\n\n" + "\n".join(lines)
 

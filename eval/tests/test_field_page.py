@@ -19,6 +19,7 @@ def row(gather: str, at: str, vpls: int, relmse: float, **more: Any) -> dict[str
         "vpls": vpls,
         "relmse": relmse,
         "relmse_error": 0.01,
+        "spp": 1,
         "render_cpu_s": vpls / 100,
         "shadow_rays": vpls / 10,
     }
@@ -65,15 +66,14 @@ class FieldPage(unittest.TestCase):
             row("tilecuts", "equal time", 1000, 0.3),
         ]
         text = field_page.table(rows, ["a", "b", "c", "tilecuts"])
-        _, few = text.split("\n\nToo slow for this time: b, c. With 1,000 VPLs")
+        _, few = text.split("\n\nToo slow for this time: b, c. Beside the default, with 1,000 VPLs,")
         self.assertEqual(
-            few.splitlines()[2:],
+            few.splitlines()[3:],
             [
                 "| gather | a room |",
                 "|---|---|",
-                "| tilecuts | 0.5 in 10 s |",
-                "| b | 0.4 in 10 s |",
-                "| c | - |",
+                "| tilecuts | 0.5 (10) |",
+                "| b | 0.4 (10) |",
             ],
         )
 
