@@ -75,7 +75,7 @@ class References(unittest.TestCase):
 
     def test_larger_films_take_fewer_samples_a_pixel(self) -> None:
         films = ("40x30", "80x60", "240x180")
-        for integrator, last in (("path", ("guided", 114)), ("light", ("light", 456))):
+        for integrator, last in (("path", ("guided", 29)), ("light", ("light", 456))):
             view = dataclasses.replace(
                 self.view, reference_spp=4096, reference_integrator=integrator
             )
