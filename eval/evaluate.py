@@ -178,6 +178,7 @@ def main() -> int:
     if set(parts) - JUDGE_NOTHING:
         context.require_references()
     if ahead:
+        arguments.commit = begin["commit"]
         run_ahead(Path(__file__), arguments, [scene.id for scene in chosen])
     for module in modules:
         module.run(context)

@@ -72,6 +72,8 @@ def table(results: list[Row], gathers: Iterable[str] = ()) -> str:
 def few_vpls(rows: list[Row], scenes: list[str], gathers: list[str]) -> str:
     """relMSE and CPU seconds of these gathers, and of the default, at the least number of VPLs."""
     equal = [r for r in rows if r["at"] == "equal VPLs"]
+    if not equal:
+        return f"\n\nToo slow for this time: {', '.join(gathers)}."
     count = min(int(r["vpls"]) for r in equal)
     shown = {(r["gather"], r["scene"]): r for r in equal if int(r["vpls"]) == count}
     spp = next(iter(shown.values()))["spp"]
@@ -87,7 +89,8 @@ def few_vpls(rows: list[Row], scenes: list[str], gathers: list[str]) -> str:
         "| gather | " + " | ".join(scenes) + " |",
         "|---" * (1 + len(scenes)) + "|",
     ]
-    for gather in ["tilecuts", *(g for g in gathers if any((g, s) in shown for s in scenes))]:
+    known = [g for g in gathers if any((g, s) in shown for s in scenes)]
+    for gather in dict.fromkeys(["tilecuts", *known]):
         lines.append("| " + " | ".join([gather, *(cell(gather, s) for s in scenes)]) + " |")
     return "\n\n" + "\n".join(lines)
 

@@ -40,8 +40,10 @@ def run_ahead(program: Path, arguments: argparse.Namespace, scenes: list[str]) -
             words = [str(word) for word in itertools.chain(*given.items())]
             words += ["--quiet"] if arguments.quiet else []
             pinned = ["taskset", "--cpu-list", str(processor), sys.executable, str(program)]
-            done = subprocess.run([*pinned, *words], stdout=subprocess.DEVNULL)
-        free.put(processor)
+            try:
+                done = subprocess.run([*pinned, *words], stdout=subprocess.DEVNULL)
+            finally:
+                free.put(processor)
         if done.returncode != 0:
             raise SystemExit(f"eval: scene '{scene}' failed; its messages stand above")
 

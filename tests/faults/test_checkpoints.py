@@ -95,7 +95,10 @@ class Checkpoints(Workbench):
 
     @needs_shim
     def test_every_call_that_can_fail(self) -> None:
-        """Failed saving means exit code 4, unchanged outputs, and an intact checkpoint."""
+        """Failed saving means exit code 4, unchanged outputs, and an intact checkpoint.
+
+        Every second one is resumed, all of them with BNVPL_FAULTS=full.
+        """
         for command in RESUMED:
             self.right(command)
             for call, error in (

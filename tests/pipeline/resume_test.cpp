@@ -19,19 +19,25 @@ class ResumeRun : public PipelineTest {
     const auto begin = std::chrono::steady_clock::now();
     succeed(name, arguments + " -o " + path(whole));
     const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
-    EXPECT_GE(timesStopped(name, arguments + " -o " + path(pieces), 0.4 * taken.count()), 1);
+    // The second run may be faster than the first one, beside other tests.
+    int stopped = 0;
+    for (double share = 0.4; stopped == 0 && share > 0.04; share *= 0.5)
+      stopped = timesStopped(name, arguments + " -o " + path(pieces), share * taken.count());
+    EXPECT_GE(stopped, 1) << name << " " << arguments;
     EXPECT_EQ(readAll(at(pieces)), readAll(at(whole))) << name << " " << arguments;
   }
+  // How often the command was stopped after it had begun, so that it went on from its checkpoint.
   int timesStopped(const std::string& name, const std::string& arguments, double seconds) const {
-    for (int stopped = 0; stopped < 30; ++stopped, seconds *= 1.3) {
+    int stopped = 0;
+    for (int run = 0; run < 30; ++run, seconds *= 1.3) {
       const Outcome r =
           shell("timeout --foreground -s INT " + std::to_string(seconds) + " '" BNVPL_BIN "/" +
                 name + "' " + arguments + " --quiet --checkpoint " + path("work.checkpoint"));
       if (r.code == kExitOk) return stopped;
       EXPECT_EQ(r.code, 124) << r.err;  // exit code of `timeout` when it stopped the command
-      if (fs::exists(at("work.checkpoint"))) {  // else it was stopped before it had begun
-        EXPECT_TRUE(contains(r.err, "same command goes on from")) << r.err;
-      }
+      if (!fs::exists(at("work.checkpoint"))) continue;
+      EXPECT_TRUE(contains(r.err, "same command goes on from")) << r.err;
+      ++stopped;
     }
     ADD_FAILURE() << name << " did not end";
     return 0;

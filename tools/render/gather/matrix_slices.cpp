@@ -154,6 +154,7 @@ SlicePlan makeSlicePlan(const GatherInputs& in, const Values& options) {
   for (const Placed& s : plan.slices) {
     if (s.point.triangle != kNone) rows.push_back(s.point);
   }
+  plan.rows = rows.size();
   const Columns columns = columnsAt(in, rows, "slices", kSlicesOption.name);
   const auto count = static_cast<size_t>(options[kColumnsOption]);
   const std::vector<Cluster> common = clustersOfSeenAndUnseen(

@@ -36,8 +36,9 @@ struct SlicePlan {
     uint32_t slice = 0;  // that of a leaf
   };
   float scale = 1.0f;       // scale of normals
-  std::vector<Node> nodes;  // nodes[0] is the root; empty if the film shows nothing
-  std::vector<PlacedPoint> slices;
+  std::vector<Node> nodes;  // nodes[0] is the root; empty if there are no VPLs
+  std::vector<PlacedPoint> slices;  // one without a row where the film's points miss the scene
+  size_t rows = 0;                  // rows of the matrix evaluated
   std::vector<ClusterDraws> draws;  // empty if there are no VPLs
   // The slice in whose part of space the point lies. There are slices.
   size_t sliceOf(const SurfacePoint& point) const;

@@ -83,6 +83,7 @@ extern const GatherMethod method{
     .options = kOptions,
     .make = make,
     .counters = kCounters,
-    .lightGroups = false};
+    .lightGroups = false,
+    .sharesDraws = true};
 
 }  // namespace bnvpl::methods::gather::grid_hierarchy

@@ -130,7 +130,7 @@ class PairPlanner {
     };
     const double seen = estimate(true);
     // Where nothing is seen, or only through a slit, the light without shadows is the scale.
-    const auto floor = static_cast<float>(seen > 0.0 ? kFloor * seen : estimate(false));
+    const auto floor = static_cast<float>(kFloor * (seen > 0.0 ? seen : estimate(false)));
     for (const uint32_t g : groups) least_[g] = std::max(floor, least_[g]);
     // Groups hand their value down, and the least of their values up; children stand behind.
     for (size_t i = 0; i < nodes.size(); ++i) {

@@ -15,7 +15,7 @@ Gather make(const GatherInputs& in, const Values& options) {
   const auto plan = std::make_shared<const SlicePlan>(makeSlicePlan(in, options));
   double clusters = 0.0;
   for (const ClusterDraws& slice : plan->draws) clusters += double(slice.clusters());
-  std::vector<PlanCount> planned = entriesOf(plan->slices.size(), in.vpls.size());
+  std::vector<PlanCount> planned = entriesOf(plan->rows, in.vpls.size());
   planned.push_back({"slice_clusters", "clusters of a slice, on average",
                      plan->draws.empty() ? 0.0 : clusters / double(plan->draws.size())});
   return {.tile =

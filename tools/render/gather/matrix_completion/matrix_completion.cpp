@@ -60,7 +60,7 @@ Gather make(const GatherInputs& in, const Values& options) {
                 }
               },
           .wholePixels = true,
-          .planned = entriesOf(plan->slices.size(), in.vpls.size())};
+          .planned = entriesOf(plan->rows, in.vpls.size())};
 }
 
 }  // namespace
