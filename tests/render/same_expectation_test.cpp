@@ -180,7 +180,7 @@ TEST(SameExpectation, PathsAndPhotonsOverEveryModel) {
       if (m.name == "Red") m.model = models[1];
     }
     const World world(std::move(scene));
-    const Given indirect{{"only", "indirect"}, {"max-bounces", "8"}};
+    const Given indirect{{"only", "indirect"}};
     EXPECT_TRUE(sameExpectation(paths(world, with(indirect, {{"spp", "64"}})),
                                 photons(world, with(indirect, {{"spp", "32"}})), {.seeds = 16}))
         << name;

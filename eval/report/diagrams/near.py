@@ -21,12 +21,17 @@ def corner(d: Drawing) -> None:
     d.add("circle", style, cx=LIGHT[0], cy=LIGHT[1], r=60)
 
 
+def bounded(d: Drawing, words: str) -> None:
+    """A receiver below the VPL, over what is drawn so far."""
+    d.vpl(LIGHT)
+    d.receiver(BELOW)
+    d.text((8, 16), words)
+
+
 def none(d: Drawing) -> None:
     corner(d)
     d.ray(BELOW, LIGHT)
-    d.vpl(LIGHT)
-    d.receiver(BELOW)
-    d.text((8, 16), "bounded within\nthe circle: the\ncorner is too dark")
+    bounded(d, "bounded within\nthe circle: the\ncorner is too dark")
 
 
 def near_field(d: Drawing) -> None:
@@ -34,9 +39,7 @@ def near_field(d: Drawing) -> None:
     d.ray(BELOW, LIGHT)
     for y in (102, 90, 56, 30):
         d.arrow(BELOW, (WALL_X - 3, y), CLUSTERS[0])
-    d.vpl(LIGHT)
-    d.receiver(BELOW)
-    d.text((8, 16), "rays by the BSDF\nadd what the bound\ntakes at their ends")
+    bounded(d, "rays by the BSDF\nadd what the bound\ntakes at their ends")
 
 
 def kollig_keller(d: Drawing) -> None:
@@ -45,9 +48,7 @@ def kollig_keller(d: Drawing) -> None:
     for a, b in zip(path, path[1:], strict=False):
         d.arrow(a, b, CLUSTERS[0])
         d.untested(b, LIGHT)
-    d.vpl(LIGHT)
-    d.receiver(BELOW)
-    d.text((8, 16), "paths go on from\nvertex to vertex\nwhile the bound\ntakes light")
+    bounded(d, "paths go on from\nvertex to vertex\nwhile the bound\ntakes light")
 
 
 def local(d: Drawing) -> None:

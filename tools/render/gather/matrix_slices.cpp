@@ -166,7 +166,8 @@ SlicePlan makeSlicePlan(const GatherInputs& in, const Values& options) {
   const size_t neighbours = std::min<size_t>(options[kNeighbourSlicesOption], columns.rows());
   const auto threads =
       double(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
-  requireMemory(threads * double(columns.size()) * (12.0 * double(neighbours) + 16.0),
+  requireMemory(std::min(threads, double(plan.slices.size())) * double(columns.size()) *
+                    (12.0 * double(neighbours) + 16.0),
                 "the columns of neighbouring slices, for each thread",
                 "lower --neighbour-slices, or keep fewer VPLs with vpl-eliminate -n");
   parallelFor(plan.slices.size(), 1, [&](size_t s) {

@@ -20,8 +20,6 @@ constexpr size_t kImageClusters = 100, kImageReceivers = 16;
 constexpr double kFloor = 0.01;
 // Pairs from which the threads begin, and receivers up to which each traces a ray.
 constexpr size_t kStarts = 2000, kTraced = 8;
-// Bytes of a pixel while the plan is made, two nodes included, and of a pair while all are sorted.
-constexpr double kBytesPerPoint = 430.0, kBytesPerPair = 40.0;
 
 class PairPlanner {
  public:
@@ -42,6 +40,9 @@ class PairPlanner {
     }
     std::vector<std::vector<Found>> found(starts.size());
     parallelFor(starts.size(), 1, [&](size_t k) { refine(starts[k], found[k]); });
+    size_t count = all.size();
+    for (const auto& part : found) count += part.size();
+    all.reserve(count), plan_.pairs.reserve(count);
     for (auto& part : found) {
       all.insert(all.end(), part.begin(), part.end());
       part = {};
@@ -71,10 +72,15 @@ class PairPlanner {
 
   void placeReceivers() {
     const Film& film = scene().film;
-    requireMemory(kBytesPerPoint * double(film.width) * double(film.height),
-                  "the points of --gather illumination-cut", "choose a smaller --size");
+    const auto require = [](double bytesEach, double points) {
+      requireMemory(bytesEach * points, "the points of --gather illumination-cut",
+                    "choose a smaller --size");
+    };
+    require(sizeof(SurfacePoint), double(film.width) * double(film.height));
     points_ = in_.filmPoints().points;
     std::erase_if(points_, [](const SurfacePoint& p) { return p.triangle == kNone; });
+    require(sizeof(ReceiverBsdf) + 2 * sizeof(ReceiverNode) + sizeof(uint32_t),
+            double(points_.size()));
     std::vector<ReceiverBsdf> bsdfs(points_.size());
     parallelFor(points_.size(), 256,
                 [&](size_t i) { bsdfs[i] = ReceiverBsdf(Bsdf(scene(), points_[i])); });
@@ -176,7 +182,8 @@ class PairPlanner {
       const uint64_t more = found.size() - checked;
       checked = found.size();
       const uint64_t all = pairs_.fetch_add(more, std::memory_order_relaxed) + more;
-      requireMemory(kBytesPerPair * double(all), "pairs of points and clusters",
+      // Sorting takes as much again.
+      requireMemory(2.0 * sizeof(Found) * double(all), "pairs of points and clusters",
                     "raise --error, or choose a smaller --size");
     }
   }

@@ -71,10 +71,11 @@ class CellBuilder {
   void placePoints() {
     const Film& size = in_.accel.scene().film;
     const double pixels = double(size.width) * size.height;
-    requireMemory(pixels * 2.0 * double(sizeof(SurfacePoint)), "--gather lie",
-                  "choose a smaller --size");
+    requireMemory(pixels * double(sizeof(SurfacePoint)), "--gather lie", "choose a smaller --size");
     std::vector<SurfacePoint> film = in_.filmPoints().points;
     std::erase_if(film, [](const SurfacePoint& p) { return p.triangle == kNone; });
+    requireMemory(double(film.size() * sizeof(SurfacePoint)), "--gather lie",
+                  "choose a smaller --size");
     Bounds seen;
     for (const SurfacePoint& p : film) seen.extend(p.position);
     if (film.empty()) return;
