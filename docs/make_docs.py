@@ -96,7 +96,7 @@ def recipes_block(_: object) -> str:
 
 
 def methods_block(bench: Bench) -> str:
-    """The methods of all stages with links to their theory, for pages in docs/."""
+    """Methods of all stages and kinds of light, with links to their theory, for pages in docs/."""
     rows = ["| option | methods |", "|---|---|"]
     for tool in STAGES:
         for slot in bench.spec(tool)["slots"]:
@@ -108,11 +108,17 @@ def methods_block(bench: Bench) -> str:
                 key=lambda name: (name != slot["default"], name),
             )
             links = [f"[{name}]({folder}{name.replace('-', '_')}/theory.md)" for name in names]
-            rows.append(
-                f"| `{tool} --{slot['name']}` | "
-                f"**{links[0]}**{''.join(f', {link}' for link in links[1:])} |"
-            )
+            rows.append(methods_row(f"{tool} --{slot['name']}", links))
+    kinds = {page.parent.name for page in ROOT.glob("transport/virtual_light/*/theory.md")}
+    links = [f"[{k}](../transport/virtual_light/{k}/theory.md)" for k in sorted(kinds - {"point"})]
+    point = "[point](../transport/virtual_light/point/theory.md)"
+    rows.append(methods_row("vpl-render --light", [point, *links]))
     return "".join(f"{row}\n" for row in rows)
+
+
+def methods_row(option: str, links: list[str]) -> str:
+    """A row of methods_block; the first link is that of the default."""
+    return f"| `{option}` | **{links[0]}**{''.join(f', {link}' for link in links[1:])} |"
 
 
 def cost_block(part: Callable[[dict[str, Any]], list[str]]) -> str:

@@ -6,7 +6,8 @@
 A row for each gather: relMSE of the indirect light of each scene at equal time, without
 compensation and with the default one, and shadow rays at as many VPLs.
 The least error of a scene is bold, and with it those that lie within the standard errors of both.
-A second table has the gathers that are too slow for that, at the least number of VPLs.
+A second table has the gathers that are too slow for that, at the least number of VPLs, a third one
+the default gather with every compensation and kind of light.
 """
 
 import argparse
@@ -20,6 +21,7 @@ from rooms_page import put
 
 PAGE = settings.ROOT / "docs/field.md"
 COMPENSATIONS = ("none", "near-field")  # the second is the default of vpl-render
+DEFAULT = "tilecuts"  # its gather
 Row = dict[str, Any]
 
 
@@ -66,7 +68,30 @@ def table(results: list[Row], gathers: Iterable[str] = ()) -> str:
             continue
         cells.append(f"{sum(rays) / len(rays):.0f}" if rays else "-")
         lines.append("| " + " | ".join([gather, *cells]) + " |")
-    return "\n".join(lines) + (few_vpls(rows, scenes, too_slow) if too_slow else "")
+    few = few_vpls(rows, scenes, too_slow) if too_slow else ""
+    return "\n".join(lines) + few + near_light(at_time, scenes)
+
+
+def near_light(at_time: list[Row], scenes: list[str]) -> str:
+    """relMSE and mean of the default gather with every compensation and kind of light."""
+    shown = {(r["compensate"], r["scene"]): r for r in at_time if r["gather"] == DEFAULT}
+    names = dict.fromkeys(name for name, _ in shown)
+    if set(names) <= set(COMPENSATIONS):
+        return ""
+
+    def cell(name: str, scene: str) -> str:
+        row = shown.get((name, scene))
+        return f"{value(row)} ({row['mean_ratio']:.3f})" if row else "-"
+
+    lines = [
+        f"`{DEFAULT}` with every compensation and kind of light, as above (in brackets: mean over",
+        "that of the reference):",
+        "",
+        "| | " + " | ".join(scenes) + " |",
+        "|---" * (1 + len(scenes)) + "|",
+        *("| " + " | ".join([n, *(cell(n, s) for s in scenes)]) + " |" for n in names),
+    ]
+    return "\n\n" + "\n".join(lines)
 
 
 def few_vpls(rows: list[Row], scenes: list[str], gathers: list[str]) -> str:
@@ -90,7 +115,7 @@ def few_vpls(rows: list[Row], scenes: list[str], gathers: list[str]) -> str:
         "|---" * (1 + len(scenes)) + "|",
     ]
     known = [g for g in gathers if any((g, s) in shown for s in scenes)]
-    for gather in dict.fromkeys(["tilecuts", *known]):
+    for gather in dict.fromkeys([DEFAULT, *known]):
         lines.append("| " + " | ".join([gather, *(cell(gather, s) for s in scenes)]) + " |")
     return "\n\n" + "\n".join(lines)
 

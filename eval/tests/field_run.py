@@ -47,6 +47,11 @@ class FieldRun(unittest.TestCase):
         for gather, mean in means.items():
             self.assertAlmostEqual(mean / means["all"], 1.0, delta=0.1, msg=gather)
 
+    def test_kinds_of_light_stand_beside_compensations(self) -> None:
+        at_time = {(r["gather"], r["compensate"]) for r in self.rows if r["at"] == "equal time"}
+        self.assertLessEqual({("tilecuts", "near-field"), ("tilecuts", "spherical")}, at_time)
+        self.assertNotIn(("tilecuts", "yuksel"), at_time)  # it is not among this size's kinds
+
     def test_measures_are_there(self) -> None:
         for row in self.rows:
             for key in ("relmse", "rmse_over_mean", "smape", "flip", "bias_over_mean"):

@@ -21,6 +21,7 @@ def row(gather: str, at: str, vpls: int, relmse: float, **more: Any) -> dict[str
         "relmse_error": 0.01,
         "spp": 1,
         "render_cpu_s": vpls / 100,
+        "mean_ratio": 0.97,
         "shadow_rays": vpls / 10,
     }
     return made | more
@@ -76,6 +77,20 @@ class FieldPage(unittest.TestCase):
                 "| b | 0.4 (10) |",
             ],
         )
+
+    def test_the_default_gather_stands_beside_itself_with_every_compensation(self) -> None:
+        rows = [
+            row("tilecuts", "equal time", 1000, 0.3),
+            row("tilecuts", "equal time", 1000, 0.1, compensate="local"),
+            row("tilecuts", "equal time", 1000, 0.2, compensate="disk", mean_ratio=0.9),
+            row("b", "equal time", 1000, 0.1, compensate="disk"),
+        ]
+        table = field_page.table(rows).split("\n\n")[-1]
+        self.assertEqual(
+            table.splitlines()[2:],
+            ["| none | 0.3 (0.970) |", "| local | 0.1 (0.970) |", "| disk | 0.2 (0.900) |"],
+        )
+        self.assertNotIn("every compensation", field_page.table(rows[:1]))
 
 
 if __name__ == "__main__":

@@ -43,6 +43,25 @@ class FittingSamples(unittest.TestCase):
         self.assertEqual(self.fitting(0.0, 1e-6, 4.0), field.MAX_SPP)
 
 
+class NearLight(unittest.TestCase):
+    def options(self, compensate: str) -> tuple[str, ...]:
+        context = mock.MagicMock(size={"candidates_per_vpl": 10})
+        field.Field(context).configuration(mock.Mock(), "tilecuts", compensate, 100)
+        options: tuple[str, ...] = context.configuration.return_value.but.call_args.kwargs["render"]
+        return options
+
+    def test_a_kind_of_light_is_rendered_without_compensation(self) -> None:
+        made = ("--gather", "tilecuts", "--compensate", "none", "--fireflies", "keep")
+        self.assertEqual(self.options("none"), made)
+        self.assertEqual(self.options("yuksel"), (*made, "--light", "yuksel"))
+
+    def test_only_the_default_gather_is_paired_with_kinds(self) -> None:
+        size = {"compensations": [], "gathers_with_any": ["all"], "kinds": ["disk"]}
+        self.assertTrue(field.paired(size, "tilecuts", "disk"))
+        self.assertFalse(field.paired(size, "tilecuts", "yuksel"))
+        self.assertFalse(field.paired(size, "all", "disk"))
+
+
 class TooSlow(unittest.TestCase):
     def test_no_trial_is_run_where_one_sample_would_exceed_the_time(self) -> None:
         size = {"equal_time_vpls": 10_000, "candidates_per_vpl": 10, "time_s": 4.0}

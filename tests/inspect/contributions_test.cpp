@@ -6,7 +6,7 @@
 #include "tests/inspect/tiny_scene.h"
 #include "tools/common/files/json_text.h"
 #include "transport/camera.h"
-#include "transport/virtual_light.h"
+#include "transport/virtual_light/virtual_light.h"
 
 namespace bnvpl {
 namespace {

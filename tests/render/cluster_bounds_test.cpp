@@ -7,7 +7,7 @@
 #include "tests/render/random_lights.h"
 #include "tools/render/gather/receiver_tree.h"
 #include "tools/render/light_tree/normal_cone.h"
-#include "transport/spherical_light.h"
+#include "transport/virtual_light/spherical/spherical_transfer.h"
 
 namespace bnvpl::test {
 namespace {

@@ -9,7 +9,7 @@
 #include "tools/render/gather/gather.h"
 #include "tools/render/render.h"
 #include "tools/render/stage_options.h"
-#include "transport/virtual_light_kinds.h"
+#include "transport/virtual_light/kinds.h"
 
 namespace bnvpl::test {
 namespace {

@@ -4,7 +4,7 @@
 #include "core/random.h"
 #include "core/sampling.h"
 #include "scene/scene.h"
-#include "transport/virtual_light.h"
+#include "transport/virtual_light/virtual_light.h"
 
 namespace bnvpl::test {
 

@@ -10,7 +10,7 @@
 #include "tests/support/pipeline.h"
 #include "tests/support/threads.h"
 #include "tools/render/gather/gather.h"
-#include "transport/virtual_light_kinds.h"
+#include "transport/virtual_light/kinds.h"
 
 namespace bnvpl::test {
 

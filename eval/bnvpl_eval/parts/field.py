@@ -2,11 +2,11 @@
 
 Equal VPLs: without compensation, for each count, the same lit VPLs and samples a pixel. Equal time:
 with the compensations of its size, at one count, as many samples a pixel as fit into a time that is
-the same for all. Combinations that vpl-render refuses are listed with its reason.
+the same for all. Combinations that vpl-render refuses are listed with its reason. Kinds of light
+spare the spikes of near points as compensations do, so a row has one of either.
 """
 
 import math
-import re
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -16,13 +16,15 @@ import numpy as np
 
 from .. import images, measures, pipeline
 from ..context import Context
+from ..field_methods import KINDS, explanation
 from ..runner import TookTooLong, ToolFailed
-from ..settings import ROOT, View
+from ..settings import View
 from ..tables import column, table
 from .convergence import series
 
 NONE = "none"
-DEFAULTS = ("tilecuts-near-field", "tilecuts-none")  # the first that is there is shown first
+DEFAULT = "tilecuts"  # the gather of vpl-render
+DEFAULTS = (f"{DEFAULT}-near-field", f"{DEFAULT}-none")  # the first that is there is shown first
 EQUAL_VPLS, EQUAL_TIME = "equal VPLs", "equal time"
 MAX_SPP = 1024  # at equal time
 CLOSE_ENOUGH = 0.1  # to the time, for a number of samples that has been run
@@ -32,17 +34,13 @@ MAX_TRIALS = 4
 CONTRIBUTIONS_WIDTH = 40  # pixels; each samples all VPLs
 REFUSED = 2  # exit code of vpl-render
 LAYERS = ("", "indirect")
-SHAPES = (
-    "Discs are VPLs, black or white squares receivers. A line is a shadow ray, a cross where it is "
-    "blocked; a dashed line is light without a ray of its own. Colours tell clusters apart."
-)
 
 COLUMNS = [
     column("gather", "gather"),
     column("scene", "scene"),
     {**column("vpls", "VPLs"), "decimals": 0},
     column("at", "at"),
-    column("compensate", "compensation"),
+    column("compensate", "compensation or kind of light"),
     {**column("spp", "spp"), "decimals": 0},
     column("relmse"),
     column("rmse_over_mean"),
@@ -72,7 +70,9 @@ class Field:
 
     def configuration(self, view: View, gather: str, compensate: str, vpls: int) -> Any:
         c = self.context.configuration(view, self.size.get("method", "local"))
-        options = ("--gather", gather, "--compensate", compensate, "--fireflies", "keep")
+        of_kind = compensate in KINDS
+        options = ("--gather", gather, "--compensate", NONE if of_kind else compensate)
+        options += ("--fireflies", "keep", *(("--light", compensate) if of_kind else ()))
         return c.but(
             vpls=vpls,
             candidates=vpls * self.size["candidates_per_vpl"],
@@ -182,6 +182,8 @@ class Field:
 
 
 def paired(size: dict[str, Any], gather: str, compensate: str) -> bool:
+    if compensate in KINDS:
+        return gather == DEFAULT and compensate in size["kinds"]
     return compensate in size["compensations"] or gather in size["gathers_with_any"]
 
 
@@ -292,48 +294,6 @@ def add_plots(context: Context, view: View, found: dict[str, list[dict[str, Any]
         )
 
 
-# What has a page of its own, and the section of docs/theory.md about each kind of light.
-PAGES = {"gather": "tools/render/gather", "compensation": "tools/render/compensate"}
-KINDS = ("disk", "yuksel", "spherical")
-
-
-def first_paragraph(text: str, after: str = "#") -> str:
-    """The first paragraph after a heading, without marks."""
-    blocks = text[text.index(after) :].split("\n\n")
-    words = next(block for block in blocks if block and not block.startswith("#"))
-    words = re.sub(r"\[([^\]]+)\]\([^)]+\)", r"\1", " ".join(words.split()))
-    words = words.replace("`", "").replace("*", "")
-    return words.removesuffix(":") + "." if words.endswith(":") else words
-
-
-def paragraph(kind: str, name: str) -> str:
-    """The first paragraph of the method's theory, as text."""
-    page = ROOT / PAGES[kind] / name.replace("-", "_") / "theory.md"
-    return first_paragraph(page.read_text())
-
-
-def explanation(gathers: list[str], compensations: list[str]) -> dict[str, Any]:
-    """A table with a paragraph and a diagram for each gather, compensation and kind of light."""
-    theory = (ROOT / "docs/theory.md").read_text()
-    texts = [
-        {"group": f"{kind}s", "name": name, "text": paragraph(kind, name)}
-        for kind, names in (("gather", gathers), ("compensation", compensations))
-        for name in names
-    ] + [
-        {
-            "group": "kinds of light",
-            "name": kind,
-            "text": first_paragraph(theory, f"`--light {kind}` "),
-        }
-        for kind in KINDS
-    ]
-    columns = [column("name", "method"), column("text", "what it does")]
-    made = table("methods", "What the methods do", SHAPES, columns, texts)
-    for row in made["rows"]:
-        row["diagram"] = row["name"]
-    return made
-
-
 def note(size: dict[str, Any], run: Field) -> str:
     parts = [
         "One set of lit VPLs for each scene, count and seed.",
@@ -346,6 +306,7 @@ def note(size: dict[str, Any], run: Field) -> str:
             f"{size['equal_time_vpls']} VPLs.",
             f"{', '.join(size['gathers_with_any'])} also with compensations other than "
             f"{' and '.join(size['compensations'])}.",
+            f"Kinds of light: {DEFAULT}, no compensation.",
         ]
     if run.skipped:
         parts.append(f"Left out, as they take too long: {'; '.join(run.skipped)}.")
@@ -363,7 +324,7 @@ def run(context: Context) -> None:
             context.say(f"field: {view.name}, {gather}")
             found[gather] = all_of.at_equal_vpls(view, gather)
         shown = []
-        for compensate in compensations:
+        for compensate in (*compensations, *KINDS):
             for gather in gathers:
                 if not paired(context.size, gather, compensate):
                     continue

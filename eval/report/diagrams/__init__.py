@@ -97,6 +97,10 @@ DIAGRAMS: dict[str, tuple[str, Callable[[Drawing], None]]] = {
         "Within a distance the light of a VPL is bounded, and nothing is added.",
         near.none,
     ),
+    "point": (
+        "The attenuation of a point with a bound, beside that without.",
+        near.point,
+    ),
     "disk": (
         "The attenuation of a disk beside that of a bounded point.",
         near.disk,

@@ -89,6 +89,11 @@ def attenuation(d: Drawing, value: Callable[[float], float]) -> None:
     d.text((94, 122), "R", "middle")
 
 
+def point(d: Drawing) -> None:
+    attenuation(d, lambda x: 1 / max(x * x, 1.0))
+    d.text((110, 22), "1 / max(d², R²)\ngrey: 1 / d²")
+
+
 def disk(d: Drawing) -> None:
     attenuation(d, lambda x: 1 / (x * x + 1))
     d.text((110, 22), "a disk: 1 / (d² + R²)\nthin: a bounded point")

@@ -11,7 +11,7 @@
 #include "tools/eliminate/eliminate.h"
 #include "transport/camera.h"
 #include "transport/specular_path.h"
-#include "transport/virtual_light.h"
+#include "transport/virtual_light/virtual_light.h"
 
 namespace bnvpl::methods::eliminate::rejection {
 

@@ -6,7 +6,7 @@
 #include "core/parallel.h"
 #include "core/random_streams.h"
 #include "transport/camera.h"
-#include "transport/virtual_light.h"
+#include "transport/virtual_light/virtual_light.h"
 #include "transport/walk.h"
 
 namespace bnvpl {

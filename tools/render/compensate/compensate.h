@@ -14,7 +14,7 @@
 #include "tools/render/gather/gather.h"
 #include "transport/accelerator.h"
 #include "transport/spatial_light_sampler.h"
-#include "transport/virtual_light_kinds.h"
+#include "transport/virtual_light/kinds.h"
 #include "transport/vpl_groups.h"
 
 namespace bnvpl {

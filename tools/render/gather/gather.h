@@ -15,7 +15,7 @@
 #include "tools/render/sample.h"
 #include "transport/bsdf.h"
 #include "transport/lights.h"
-#include "transport/virtual_light.h"
+#include "transport/virtual_light/virtual_light.h"
 
 namespace bnvpl {
 
@@ -25,7 +25,7 @@ struct Gathered {
   Vec3 clamped;      // radiance that the bound on 1/d^2 removed
   uint32_t cut = 0;  // clusters or VPLs evaluated
   uint32_t shadowRays = 0;
-  uint32_t sampledPairs = 0;  // VPLs whose light is a mean of samples (spherical_light.h)
+  uint32_t sampledPairs = 0;  // VPLs whose light is a mean of samples (spherical_transfer.h)
   Counts counts{};            // by the method's own counters
 };
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "tools/common/options/option.h"
-#include "transport/virtual_light_kinds.h"
+#include "transport/virtual_light/kinds.h"
 
 namespace bnvpl {
 

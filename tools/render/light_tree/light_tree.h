@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "transport/virtual_light.h"
+#include "transport/virtual_light/virtual_light.h"
 
 namespace bnvpl {
 

@@ -5,7 +5,7 @@
 
 #include "core/sampling.h"
 #include "transport/direct_light.h"
-#include "transport/spherical_light.h"
+#include "transport/virtual_light/spherical/spherical_transfer.h"
 #include "transport/walk.h"
 
 namespace bnvpl {

@@ -11,7 +11,8 @@
 //   sum over y of  s(|x - y|) T(x, y) L(y) / D(y),
 //
 // where s is the share of y's light that bounded VPLs leave out, L the light that leaves y, and
-// T = f cos_x cos_y / d^2 without visibility, averaged over a sphere (transport/spherical_light.h).
+// T = f cos_x cos_y / d^2 without visibility, averaged over a sphere
+// (transport/virtual_light/spherical/spherical_transfer.h).
 #pragma once
 
 #include <optional>

@@ -9,7 +9,7 @@
 
 #include "tools/render/compensate/compensate.h"
 #include "transport/coverage.h"
-#include "transport/virtual_light_kinds.h"
+#include "transport/virtual_light/kinds.h"
 
 namespace bnvpl {
 

@@ -8,7 +8,7 @@
 
 #include "core/random.h"
 #include "tools/render/gather/cell_grid.h"
-#include "transport/virtual_light.h"
+#include "transport/virtual_light/virtual_light.h"
 
 namespace bnvpl::methods::gather::grid_hierarchy {
 

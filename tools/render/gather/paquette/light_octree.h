@@ -7,7 +7,7 @@
 
 #include "core/lanes.h"
 #include "tools/render/light_tree/normal_cone.h"
-#include "transport/virtual_light.h"
+#include "transport/virtual_light/virtual_light.h"
 
 namespace bnvpl::methods::gather::paquette {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "tools/render/gather/cell_grid.h"
-#include "transport/virtual_light.h"
+#include "transport/virtual_light/virtual_light.h"
 
 namespace bnvpl::methods::gather::shirley {
 

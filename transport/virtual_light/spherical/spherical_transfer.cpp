@@ -1,4 +1,4 @@
-#include "transport/spherical_light.h"
+#include "transport/virtual_light/spherical/spherical_transfer.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,7 @@
 #include "formats/vpl/vpl_table.h"
 #include "transport/bsdf.h"
 #include "transport/group_sink.h"
-#include "transport/virtual_light_kinds.h"
+#include "transport/virtual_light/kinds.h"
 #include "transport/vpl_groups.h"
 
 namespace bnvpl {
@@ -17,11 +17,11 @@ struct VplLights {
   VplKind kind = {};
   std::vector<Vec3> position;  // offset off its surface, so that shadow rays end before it
   std::vector<Vec3> normal;
-  std::vector<Vec3> intensity;  // intensity along the normal, flux / pi, W/sr
-  std::vector<uint32_t> row;    // row of the VplTable, ascending
-  std::vector<float> size2;     // squared size of the kind, (clamp * radius)^2; never 0
-  size_t vplCount = 0;          // rows of the table that carry flux
-  uint32_t groups = 0;          // light groups; 0: their light is not told apart
+  std::vector<Vec3> intensity;       // intensity along the normal, flux / pi, W/sr
+  std::vector<uint32_t> row;         // row of the VplTable, ascending
+  std::vector<float> size2;          // squared size of the kind, (clamp * radius)^2; never 0
+  size_t vplCount = 0;               // rows of the table that carry flux
+  uint32_t groups = 0;               // light groups; 0: their light is not told apart
   std::vector<Vec3> groupIntensity;  // `groups` intensities for each entry
 
   // Adds light of entry i by group. `transfer`: light over intensity.
@@ -48,7 +48,7 @@ VplLights makeVplLights(const VplTable& lit, const Accelerator& accel, float cla
 struct VplTransfer {
   Vec3 transfer;           // BSDF * cosines * falloff, 1/m2
   float clampLoss = 0.0f;  // contribution that the bound removes, relative to transfer
-  bool sampled = false;    // a mean of samples (spherical_light.h)
+  bool sampled = false;    // a mean of samples (spherical_transfer.h)
 };
 
 // unoccludedTransfer() of kinds whose light comes from a sphere. `d`: from the receiver to its

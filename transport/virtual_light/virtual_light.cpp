@@ -1,4 +1,4 @@
-#include "transport/virtual_light.h"
+#include "transport/virtual_light/virtual_light.h"
 
 #include <algorithm>
 #include <bit>
@@ -6,7 +6,7 @@
 
 #include "core/random.h"
 #include "core/sampling.h"
-#include "transport/spherical_light.h"
+#include "transport/virtual_light/spherical/spherical_transfer.h"
 
 namespace bnvpl {
 

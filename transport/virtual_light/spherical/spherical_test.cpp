@@ -1,7 +1,6 @@
 // Light of spherical VPLs: closed form, samples and limits.
-#include "transport/spherical_light.h"
-
 #include "tests/transport/plain_scene.h"
+#include "transport/virtual_light/spherical/spherical_transfer.h"
 
 namespace bnvpl {
 namespace {
