@@ -72,11 +72,11 @@ class Field:
         c = self.context.configuration(view, self.size.get("method", "local"))
         of_kind = compensate in KINDS
         options = ("--gather", gather, "--compensate", NONE if of_kind else compensate)
-        options += ("--fireflies", "keep", *(("--light", compensate) if of_kind else ()))
+        kind = ("--light", compensate) if of_kind else ()
         return c.but(
             vpls=vpls,
             candidates=vpls * self.size["candidates_per_vpl"],
-            render=(*options, *self.size.get("render", ())),
+            render=(*options, "--fireflies", "keep", *kind, *self.size.get("render", ())),
         )
 
     def grouped(self) -> list[dict[str, Any]]:
