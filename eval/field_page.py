@@ -42,6 +42,8 @@ def table(results: list[Row], gathers: Iterable[str] = ()) -> str:
     """A row for each gather that has one; those of `gathers` that have none are named below."""
     rows = [r for r in results if r["part"] == "field"]
     at_time = [r for r in rows if r["at"] == "equal time"]
+    if not at_time:
+        raise SystemExit("field_page: no row at equal time; docs/field.md has those of such a size")
     most = max(int(r["vpls"]) for r in at_time)
     scenes = list(dict.fromkeys(r["scene"] for r in rows))
     columns = [(scene, compensate) for compensate in COMPENSATIONS for scene in scenes]

@@ -16,7 +16,8 @@ import numpy.typing as npt
 
 from . import images, stage_runs
 from .guard import guarded, output_guard
-from .runner import Run, Runner, digest, scene_key
+from .runner import Run, Runner
+from .scene_files import digest, scene_key
 from .settings import EVAL, ROOT, View
 
 CHUNK = 2048  # samples a pixel of one render, at most

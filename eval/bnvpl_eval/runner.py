@@ -5,11 +5,9 @@ option, tool or scene reruns exactly the commands that depend on it. Each run wr
 its outputs: command, key, wall and CPU seconds, peak memory.
 """
 
-import hashlib
 import json
 import math
 import os
-import re
 import resource
 import shutil
 import signal
@@ -22,30 +20,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from .scene_files import NAMING, digest, scene_key
 from .settings import ROOT
-
-
-def digest(data: bytes) -> str:
-    return hashlib.sha256(data).hexdigest()[:20]
-
-
-def scene_key(scene: Path) -> str:
-    """Key of a scene.toml and all models, materials and pictures in its and the named folders."""
-    text = scene.read_text()
-    folders = [scene.parent] + [
-        (scene.parent / os.path.expandvars(name)).resolve().parent
-        for name in re.findall(r'^(?:file|materials) = "(.*)"', text, re.M)
-    ]
-    files = sorted(
-        {
-            file
-            for folder in folders
-            for file in folder.iterdir()
-            if file.suffix in (".obj", ".mtl", ".png")
-        },
-        key=lambda file: str(file.name),
-    )
-    return digest(text.encode() + b"".join(file.read_bytes() for file in files))
 
 
 class ToolFailed(SystemExit):
@@ -90,12 +66,13 @@ class Runner:
     _tools: dict[Path, tuple[Any, ...]] = field(default_factory=dict)
 
     def file_key(self, path: Path) -> str:
-        """Key of a file: that of the run that made it, or a hash of its bytes and models."""
+        """Key of a file: that of the run that made it, or a hash of its bytes and of the files that
+        it names."""
         if path.is_relative_to(self.cache):
             return path.parent.name + "/" + path.name
         if path not in self._files:
             self._files[path] = (
-                scene_key(path) if path.suffix == ".toml" else digest(path.read_bytes())
+                scene_key(path) if path.name.endswith(NAMING) else digest(path.read_bytes())
             )
         return self._files[path]
 

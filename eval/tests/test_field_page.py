@@ -78,6 +78,10 @@ class FieldPage(unittest.TestCase):
             ],
         )
 
+    def test_a_size_without_equal_time_has_no_table(self) -> None:
+        with self.assertRaisesRegex(SystemExit, "no row at equal time"):
+            field_page.table([row("a", "equal VPLs", 1000, 0.3)])
+
     def test_the_default_gather_stands_beside_itself_with_every_compensation(self) -> None:
         rows = [
             row("tilecuts", "equal time", 1000, 0.3),

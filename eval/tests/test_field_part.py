@@ -7,7 +7,7 @@ from pathlib import Path
 from unittest import mock
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-from bnvpl_eval import pipeline  # noqa: E402 (after the path that it needs)
+from bnvpl_eval import pipeline, settings  # noqa: E402 (after the path that it needs)
 from bnvpl_eval.parts import field  # noqa: E402
 from bnvpl_eval.runner import TookTooLong  # noqa: E402
 
@@ -29,6 +29,10 @@ class FittingSamples(unittest.TestCase):
     def test_fewer_samples_than_the_first_trial(self) -> None:
         self.assertEqual(self.fitting(0.0, 4.0, 4.0), 1)
         self.assertEqual(self.fitting(0.0, 20.0, 4.0), 0)
+
+    def test_as_many_samples_as_the_first_trial_may_take_a_quarter_more(self) -> None:
+        self.assertEqual(self.fitting(0.0, 2.45, 4.0), 2)
+        self.assertEqual(self.fitting(0.0, 2.6, 4.0), 1)
 
     def test_one_sample_whose_preparations_exceed_the_time_is_left_out(self) -> None:
         self.assertEqual(self.fitting(20.0, 0.5, 12.0), 0)
@@ -60,6 +64,27 @@ class NearLight(unittest.TestCase):
         self.assertTrue(field.paired(size, "tilecuts", "disk"))
         self.assertFalse(field.paired(size, "tilecuts", "yuksel"))
         self.assertFalse(field.paired(size, "all", "disk"))
+
+
+class Pictures(unittest.TestCase):
+    def test_every_size_has_contributions_of_its_own_vpls(self) -> None:
+        """Also sizes without rows at equal time, whose VPLs come from the lights."""
+        _, table = settings.load()
+        for name, size in table["size"].items():
+            if not name.startswith("field"):
+                continue
+            context = mock.MagicMock(size=size)
+            row = {"gather": "all", "compensate": "none", "at": "equal VPLs", "vpls": 10}
+            row |= {"mean_ratio": 1.0, "relmse": 0.1, "seeds": 1, "images": ["a.exr"]}
+            with (
+                mock.patch.object(pipeline, "contributions") as contributions,
+                mock.patch.object(field, "mean_reference"),
+            ):
+                field.add_pictures(context, mock.Mock(), [row])
+            contributions.assert_called_once()
+            context.configuration.assert_called_once_with(mock.ANY, size.get("method", "local"))
+            vpls = context.configuration.return_value.but.call_args.kwargs["vpls"]
+            self.assertIn(vpls, size["vpls"], name)
 
 
 class TooSlow(unittest.TestCase):

@@ -6,7 +6,7 @@ import unittest
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-from bnvpl_eval.runner import Run, Runner, TookTooLong, scene_key  # noqa: E402 (after the path that it needs)
+from bnvpl_eval.runner import Run, Runner, TookTooLong  # noqa: E402 (after the path that it needs)
 
 TOOL = """#!/bin/sh
 # copies its input behind a line with its options; every run is one line of calls.log
@@ -95,14 +95,6 @@ class Caching(unittest.TestCase):
         with self.assertRaisesRegex(SystemExit, "exit code 3: made to fail"):
             self.run_tool("fail")
         self.assertEqual(list((self.folder / "cache").iterdir()), [])
-
-    def test_scene_key_holds_the_models(self) -> None:
-        scene, model = self.folder / "scene.toml", self.folder / "room.obj"
-        scene.write_text('[[mesh]]\nfile = "room.obj"\n')
-        model.write_text("v 0 0 0\n")
-        before = scene_key(scene)
-        model.write_text("v 0 0 1\n")
-        self.assertNotEqual(before, scene_key(scene))
 
 
 if __name__ == "__main__":

@@ -44,7 +44,16 @@ def _columns_in_order(vpls: Vpls) -> dict[str, Array]:
     if len(extras) > spec.MAX_EXTRA_COLUMNS:
         raise ValueError(f"more than {spec.MAX_EXTRA_COLUMNS} columns of methods")
     count = len(rows_of("position", vpls.columns["position"]))
-    return {name: typed(name, vpls.columns[name], count) for name in standard + extras}
+    columns = {name: typed(name, vpls.columns[name], count) for name in standard + extras}
+    points = {name: columns[name].shape[1] for name in columns if _is_of_emit_points(name)}
+    if len(set(points.values())) > 1:
+        counts = ", ".join(f"{name} has {number}" for name, number in points.items())
+        raise ValueError(f"columns differ in their points a row: {counts}")
+    return columns
+
+
+def _is_of_emit_points(name: str) -> bool:
+    return name in COLUMNS and COLUMNS[name].of_emit_points
 
 
 def _entry(vpls: Vpls, name: str, values: Array) -> Entry:

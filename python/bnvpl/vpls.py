@@ -127,7 +127,7 @@ def complete(given: Mapping[str, npt.ArrayLike]) -> Vpls:
     Positions and normals are needed. With flux they are lit, with radii alone eliminated, else
     candidates. Lit and eliminated VPLs need radii. An albedo of 0.5 is assumed: the renderer
     chooses samples by it, and sums nothing of it. VPLs shine from their positions unless emission
-    points are given.
+    points are given, whose normals are those of the VPLs unless given as well.
     """
     columns = {name: rows_of(name, values) for name, values in given.items()}
     stage = "lit" if "flux" in columns else "eliminated" if "radius" in columns else "candidates"
@@ -136,13 +136,15 @@ def complete(given: Mapping[str, npt.ArrayLike]) -> Vpls:
         if name not in columns:
             raise ValueError(f"VPLs of stage {stage} need the column {name}")
     count = len(columns["position"])
+    given_points = [columns[name] for name in ("emit_position", "emit_normal") if name in columns]
+    points = given_points[0].shape[1] if given_points and given_points[0].ndim == 3 else 1
     defaults: dict[str, Array] = {
         "albedo": np.full((count, 3), 0.5, np.float32),
         "id": np.arange(count, dtype=np.uint32),
         "photons": np.zeros(count, np.uint64),
         "relative_error": np.zeros(count, np.float32),
-        "emit_position": columns["position"][:, None],
-        "emit_normal": columns["normal"][:, None],
+        "emit_position": np.repeat(columns["position"][:, None], points, axis=1),
+        "emit_normal": np.repeat(columns["normal"][:, None], points, axis=1),
         "first_bounce_flux": np.zeros((count, 3), np.float32),
     }
     standard = [column.name for column in standard_columns(stage)]

@@ -201,6 +201,11 @@ class Refused(TestFolder):
             ("photons", [-1, 3], "column photons has values that uint64 cannot hold"),
             ("photons", [1.5, 3], "column photons has values that uint64 cannot hold"),
             ("emit_normal", np.zeros((2, 65, 3)), "65 points a row, not 1 to 64"),
+            (
+                "emit_normal",
+                np.repeat([[[0, 0, 1]], [[0, 1, 0]]], 2, axis=1),
+                "points a row: emit_position has 1, emit_normal has 2",
+            ),
             ("heat", [1, 2], "a method's column needs a name such as rich.lobes"),
             ("mine.heat", np.zeros((2, 1025)), "1025 components, not 1 to 1024"),
             ("mine.heat", [1.0, np.nan], "column mine.heat, row 1: not a finite number"),

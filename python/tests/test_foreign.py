@@ -66,6 +66,14 @@ class Foreign(TestFolder):
         self.assertAlmostEqual(completed.r_max, lit.r_max, delta=1e-6 * lit.r_max)
         self.assertAlmostEqual(completed.area, lit.area, delta=1e-6 * lit.area)
 
+    def test_emission_points_take_the_normals_of_their_vpls(self) -> None:
+        lit = bnvpl.read_vpl(GOLDEN / "lit.vpl")
+        columns = {name: lit[name] for name in ("position", "normal", "radius", "flux")}
+        columns["emit_position"] = np.repeat(lit.position[:, None], 3, axis=1)
+        bnvpl.write_vpl(self.folder / "x.vpl", columns)
+        back = bnvpl.read_vpl(self.folder / "x.vpl")
+        self.assertEqual(back.emit_normal.tolist(), np.repeat(lit.normal[:, None], 3, 1).tolist())
+
     def test_candidates_for_the_other_stages(self) -> None:
         placed, mine = self.folder / "placed.vpl", self.folder / "mine.vpl"
         bnvpl.run("vpl-place", SCENE, output=placed, count=500)

@@ -197,7 +197,7 @@ def fitting_spp(cpu_s: Callable[[int], float], few: int, time_s: float) -> int:
     few_s = max(cpu_s(few), 1e-3)
     if few_s > time_s:
         spp = round(few * time_s / few_s)
-        while spp > 0 and spp != few and cpu_s(spp) > TOO_LONG * time_s:
+        while spp > 0 and (few_s if spp == few else cpu_s(spp)) > TOO_LONG * time_s:
             spp -= 1
         return spp
     before = (few, few_s)
@@ -259,9 +259,8 @@ def add_pictures(context: Context, view: View, rows: list[dict[str, Any]]) -> No
             }
         )
     names = [identity(row) for row in rows]
-    c = context.configuration(view, "local")
-    vpls = context.size["equal_time_vpls"]
-    c = c.but(vpls=vpls, candidates=vpls * context.size["candidates_per_vpl"])
+    vpls = context.size.get("equal_time_vpls", context.size["vpls"][0])
+    c = Field(context).configuration(view, DEFAULT, NONE, vpls)
     context.pictures[view.name] = {
         "images": shown,
         "overlays": [],
