@@ -171,10 +171,10 @@ def framed(
     picture: npt.NDArray[Any], top: int, left: int, height: int, width: int
 ) -> npt.NDArray[Any]:
     out = picture.copy()
-    for rows in (slice(top - 1, top + 1), slice(top + height - 1, top + height + 1)):
-        out[rows, left : left + width] = FRAME
-    for columns in (slice(left - 1, left + 1), slice(left + width - 1, left + width + 1)):
-        out[top : top + height, columns] = FRAME
+    for edge in (top, top + height):
+        out[max(0, edge - 1) : edge + 1, left : left + width] = FRAME
+    for edge in (left, left + width):
+        out[top : top + height, max(0, edge - 1) : edge + 1] = FRAME
     return out
 
 

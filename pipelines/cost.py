@@ -13,6 +13,7 @@ import re
 from collections.abc import Callable
 
 import output_guard
+import tool_options
 
 MODEL = pathlib.Path(__file__).resolve().parent / "cost_model.json"
 DIVIDED = ("place", "estimate", "render")
@@ -34,11 +35,11 @@ class Counts:
 
 
 def count(text: str) -> float:
-    """Parses a count such as 3k, 10M or 1G. Raises ValueError."""
-    match = re.fullmatch(r"(\d+(?:\.\d+)?)([kMG]?)", text)
+    """Parses a count as the tools do, such as 3k, 10M or 1e9. Raises ValueError."""
+    match = re.fullmatch(tool_options.FORMS["count"][0], text)
     if not match:
-        raise ValueError(f"'{text}' is no count such as 3k, 10M or 1G")
-    return float(match[1]) * {"": 1, "k": 1e3, "M": 1e6, "G": 1e9}[match[2]]
+        raise ValueError(f"'{text}' is no count such as 3k, 10M or 1e9")
+    return float(match[1]) * tool_options.SUFFIXES[match[2].lower()]
 
 
 def with_shards(whole: Counts, stage: str, shards: dict[str, int]) -> Counts:

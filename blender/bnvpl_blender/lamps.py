@@ -126,6 +126,11 @@ class Lens:
     focus_distance: float = 0.0
 
 
+def pixels_of(resolution: int, percentage: int) -> int:
+    """Pixels of a film's side. Blender divides whole numbers: 29 % of 1600 are 464, not 463.99."""
+    return max(1, resolution * percentage // 100)
+
+
 def camera_section(matrix: Matrix, projection: Matrix, aspect: float, lens: Lens) -> Section:
     """A camera from its place and its projection matrix, for a film of this width over height."""
     section: Section = {

@@ -13,6 +13,7 @@ from .lamps import (
     area_share,
     camera_section,
     light_section,
+    pixels_of,
     viewport_projection,
 )
 from .materials import DEFAULT_MATERIAL, DEFAULT_SECTION, material_sections, surface_node
@@ -43,10 +44,9 @@ class SceneData:
 
 
 def film_size(scene) -> tuple[int, int]:
-    """Pixels, cut to whole ones as Blender does."""
     render = scene.render
-    share = render.resolution_percentage / 100
-    return max(1, int(render.resolution_x * share)), max(1, int(render.resolution_y * share))
+    percentage = render.resolution_percentage
+    return pixels_of(render.resolution_x, percentage), pixels_of(render.resolution_y, percentage)
 
 
 def _matrix(matrix) -> list[list[float]]:

@@ -54,6 +54,11 @@ class SectionsTest(unittest.TestCase):
         assert isinstance(width, float) and isinstance(height, float)
         self.assertAlmostEqual(width * height, math.pi * 0.25)
 
+    def test_a_share_of_the_film_is_cut_as_in_whole_numbers(self) -> None:
+        self.assertEqual(lamps.pixels_of(1600, 29), 464)
+        self.assertEqual(lamps.pixels_of(101, 50), 50)
+        self.assertEqual(lamps.pixels_of(3, 10), 1)
+
     def test_camera(self) -> None:
         projection = [[1.0, 0.0, 0.2], [0.0, 2.0, -0.1]]
         told = lamps.camera_section(PLACED, projection, 2.0, lamps.Lens())

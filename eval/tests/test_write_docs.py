@@ -34,6 +34,14 @@ def report(*ids: str) -> dict[str, Any]:
 
 
 class Crops(unittest.TestCase):
+    def test_a_frame_has_four_sides_also_at_the_rim(self) -> None:
+        for at in (0, 3):
+            picture = np.zeros((12, 12, 3), np.uint8)
+            shown = write_docs.framed(picture, at, at, 6, 6)
+            red = (shown == write_docs.FRAME).all(axis=2)
+            for side in (red[at, at:], red[:, at][at:], red[at + 6, at:], red[:, at + 6][at:]):
+                self.assertGreaterEqual(side.sum(), 6)
+
     def test_only_what_would_be_white_is_darkened(self) -> None:
         for light, stops in ((0.0, 0), (0.9, 0), (1.5, 1), (10.0, 4)):
             self.assertEqual(write_docs.stops_down(np.full((4, 4, 3), light / 2), 2.0), stops)

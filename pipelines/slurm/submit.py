@@ -13,6 +13,7 @@ import argparse
 import dataclasses
 import json
 import pathlib
+import re
 import shlex
 import shutil
 import subprocess
@@ -140,6 +141,15 @@ def ranges(numbers: Iterable[int]) -> str:
         else:
             parts.append([n, n])
     return ",".join(str(a) if a == b else f"{a}-{b}" for a, b in parts)
+
+
+def largest_index() -> int:
+    """The largest index of a job array; 0 where Slurm does not tell."""
+    if not shutil.which("scontrol"):
+        return 0
+    shown = subprocess.run(["scontrol", "show", "config"], text=True, capture_output=True)
+    found = re.search(r"^MaxArraySize\s*=\s*(\d+)", shown.stdout, re.M)
+    return int(found[1]) - 1 if found else 0
 
 
 class Submission:
@@ -294,8 +304,18 @@ class Submission:
         ]
         self.submit("summary", "merge", words, command, f"{self.run}/summary.log and timeline.svg")
 
+    def refuse_long_arrays(self, jobs: list[tuple[str, list[stages.Task]]]) -> None:
+        most = largest_index()
+        for name, tasks in jobs:
+            if most and len(tasks) > max(most, 1):
+                stage_options.refuse(
+                    f"'{name}' has {len(tasks)} tasks, and the cluster's MaxArraySize allows "
+                    f"{most} in an array; give fewer --shards or --views"
+                )
+
     def submit_all(self) -> None:
         jobs = jobs_of(self.scene, self.options)
+        self.refuse_long_arrays(jobs)
         if not self.options.dry_run:
             for command in ("sbatch", "squeue", "scancel"):
                 if not shutil.which(command):

@@ -5,6 +5,7 @@ tests/cluster/test_submit.py build/release/bin
 """
 
 import filecmp
+import itertools
 import json
 import re
 import subprocess
@@ -207,6 +208,10 @@ class SubmitTest(SlurmTest):
             "--shards",
             "estimate=4,render=4",
         )
+        counts = ("100000k", "1000K", "1e10")
+        others = dict(zip(("--candidates", "--vpls", "--photons"), counts, strict=True))
+        again = asked(*itertools.chain(*others.items()))
+        self.assertEqual(again["eliminate"], large["eliminate"])
         self.assertEqual(asked("--render-flags=--size=99x9"), asked("--render-flags=--size 99x9"))
         self.assertNotEqual(
             asked("--render-flags=--size=9000x9000"), asked("--render-flags=--size=99x9")
@@ -245,6 +250,19 @@ class SubmitTest(SlurmTest):
         (self.folder / "slurm/sbatch").unlink()
         self.environment["PATH"] = f"{self.folder}/slurm"
         self.assertIn("there is no sbatch here", self.submit().stdout)
+
+    def test_arrays_that_the_cluster_does_not_take_are_refused(self) -> None:
+        def allow(size: int) -> None:
+            shown = f"#!/bin/sh\necho 'MaxArraySize            = {size}'\n"
+            self.program("slurm/scontrol", shown)
+
+        allow(4)  # indices up to 3
+        done = self.submit("--shards", "2,render=4")
+        self.assertIn("'render' has 4 tasks, and the cluster's MaxArraySize allows 3", done.stdout)
+        self.assertNotEqual(done.returncode, 0)
+        self.assertEqual(self.jobs(), {})
+        allow(5)
+        self.assertEqual(self.submit("--shards", "2,render=4").returncode, 0)
 
     def test_what_is_refused_moves_no_records_and_submits_nothing(self) -> None:
         self.submit("--shards", "2")

@@ -87,7 +87,8 @@ def numbers(context: Context, view: View, method: str) -> str:
 
 
 def lightcuts(context: Context, view: View, c: pipeline.Configuration) -> dict[str, Any]:
-    file, _ = pipeline.image(context.runner, view, c.but(render=("--gather", "lightcuts")), 1)
+    cuts = c.but(render=(*c.render, "--gather", "lightcuts"))
+    file, _ = pipeline.image(context.runner, view, cuts, 1)
     return {
         "id": "cut-lightcuts",
         "label": "Cut size, clusters a sample (Lightcuts)",
