@@ -72,6 +72,16 @@ def commit() -> str:
     return (git("rev-parse", "--short", "HEAD") or "unknown") + (" with changes" if changed else "")
 
 
+def beginning(given_commit: str | None, threads: int | None = None) -> dict[str, Any]:
+    """The state at the beginning, as the working tree may have changed hours later."""
+    return {
+        "commit": given_commit or commit(),
+        "processor": processor(),
+        "threads": threads or len(os.sched_getaffinity(0)),
+        "date": datetime.date.today().isoformat(),
+    }
+
+
 def provenance(size: str, runner: Runner) -> dict[str, Any]:
     return {
         **runner.provenance,
@@ -162,14 +172,8 @@ def main() -> int:
         raise SystemExit(f"eval: none of the scenes '{','.join(wanted)}' is there")
     folder = (arguments.output or settings.ROOT / "build/eval" / arguments.size).resolve()
     output.check(folder)
-    ahead = arguments.jobs > 1 and len(chosen) > 1
-    # The state at the beginning counts, as the working tree may have changed hours later.
-    begin = {
-        "commit": arguments.commit or commit(),
-        "processor": processor(),
-        "threads": 1 if ahead else len(os.sched_getaffinity(0)),
-        "date": datetime.date.today().isoformat(),
-    }
+    ahead = arguments.jobs > 1  # also of one scene, so that its times are those of one thread
+    begin = beginning(arguments.commit, 1 if ahead else None)
     runner = Runner(arguments.bin.resolve(), arguments.cache.resolve(), arguments.quiet, begin)
     modules = [
         importlib.import_module(f"bnvpl_eval.parts.{part}") for part in known if part in parts

@@ -10,7 +10,6 @@ not exist are left out.
 """
 
 import argparse
-import datetime
 import os
 import re
 import sys
@@ -26,7 +25,7 @@ import results_page
 import write_docs
 from bnvpl_eval import images, output, settings, stage_runs
 from bnvpl_eval.runner import Run, Runner
-from evaluate import commit
+from evaluate import beginning
 
 WIDTH = 960  # width of the gallery's pictures in pixels
 BLOCKS = 8  # blocks along each side in the comparison with an author's render
@@ -191,13 +190,13 @@ def save(pixels: npt.NDArray[Any], name: str) -> None:
     )
 
 
-def write_table(rows: list[str]) -> None:
+def write_table(rows: list[str], begin: dict[str, Any]) -> None:
     path = write_docs.DOCS / "lab/evaluation.md"
     heads = (
         "| scene | light tracer / path tracer | VPLs / path tracer | blocks, path tracer / "
         "author's render |\n|---|---|---|---|"
     )
-    made = f"<!-- tools of {commit()}, {datetime.date.today().isoformat()} -->"
+    made = f"<!-- tools of {begin['commit']}, {begin['date']} -->"
     text = "\n".join(["<!-- gallery -->", heads, *rows, "", made, "<!-- end -->"])
     output.write_page(
         path,
@@ -216,6 +215,9 @@ def main() -> int:
     parser.add_argument(
         "--bin", type=Path, default=settings.ROOT / "build/release/bin", help="folder of the tools"
     )
+    parser.add_argument(
+        "--commit", help="of the tools in --bin; that of the working tree unless given"
+    )
     parser.add_argument("--cache", type=Path, default=settings.ROOT / "build/eval/cache")
     parser.add_argument(
         "--spp", type=int, default=256, help="of the comparisons, each of three seeds"
@@ -229,9 +231,9 @@ def main() -> int:
     arguments = parser.parse_args()
     if unknown := set(arguments.scenes) - {scene.id for scene in SCENES}:
         parser.error(f"no scene is named {', '.join(sorted(unknown))}")
-    gallery = Gallery(
-        Runner(arguments.bin.resolve(), arguments.cache.resolve()), arguments.spp, arguments.photons
-    )
+    begin = beginning(arguments.commit)
+    runner = Runner(arguments.bin.resolve(), arguments.cache.resolve(), provenance=begin)
+    gallery = Gallery(runner, arguments.spp, arguments.photons)
     rows = []
     for scene in SCENES:
         if arguments.scenes and scene.id not in arguments.scenes:
@@ -248,7 +250,7 @@ def main() -> int:
         rows.append(gallery.row(scene))
         print(rows[-1], flush=True)
     if len(rows) == len(SCENES) and not arguments.no_table:  # a part would replace the whole table
-        write_table(rows)
+        write_table(rows, begin)
     return 0
 
 

@@ -12,7 +12,8 @@ import numpy.typing as npt
 sys.path.append(str(Path(__file__).resolve().parents[1] / "pipelines"))
 import gallery
 import stage_options
-from bnvpl_eval import images, pipeline, settings, stage_runs
+from bnvpl_eval import images, settings, stage_runs
+from bnvpl_eval.equal_samples import fitting_spp
 from bnvpl_eval.runner import Run, Runner
 
 
@@ -34,6 +35,7 @@ VARIANTS = {
     "unlit-path": ["path", "--light-sampling", "off"],
     "spread-path": ["path", "--fireflies", "redistribute"],
 }
+MAX_SPP = 1 << 16  # samples a pixel in the time of ours, at most
 # Mean over the reference's mean, and four measures of error.
 COLUMNS = ("mean", "relmse", "rmse", "smape", "flip")
 CYCLES = settings.ROOT / "eval/cycles/render_cycles.py"
@@ -82,11 +84,16 @@ class Rooms:
 
     def timed(
         self, scene: gallery.Scene, setting: str, other: str, seconds: float
-    ) -> tuple[Path, int]:
-        """The image of another integrator, with the samples a pixel that fit in `seconds`."""
-        few, many = ((spp, self.by_samples(scene, setting, other, spp)[1]) for spp in (4, 20))
-        spp = max(1, round(pipeline.samples_within(seconds, few, many)))
-        return self.by_samples(scene, setting, other, spp)[0], spp
+    ) -> tuple[Path, int, float]:
+        """The image of another integrator, with the samples a pixel that fit in `seconds`.
+
+        With these, and the CPU seconds that they took.
+        """
+        spp = fitting_spp(
+            lambda spp: self.by_samples(scene, setting, other, spp)[1], 4, seconds, MAX_SPP
+        )
+        image, cpu_s = self.by_samples(scene, setting, other, max(1, spp))
+        return image, max(1, spp), cpu_s
 
     def by_samples(
         self, scene: gallery.Scene, setting: str, other: str, spp: int
@@ -98,9 +105,10 @@ class Rooms:
             run = self.render(scene, ["--integrator", "guided", *sampled], lit)
             return run["image.exr"], before_s + run.cpu_s
         if other == "cycles":
+            # Its import of the scene is a program of ours, and slow: it does not count.
             run = self.by_cycles(scene, spp)
-        else:
-            run = self.render(scene, ["--integrator", *VARIANTS.get(other, [other]), *sampled])
+            return run["image.exr"], json.loads(run["stats.json"].read_text())["render_cpu_s"]
+        run = self.render(scene, ["--integrator", *VARIANTS.get(other, [other]), *sampled])
         return run["image.exr"], run.cpu_s
 
     def cycles_reads(self, scene: gallery.Scene) -> bool:
@@ -138,9 +146,13 @@ class Rooms:
                 spp,
                 "--output",
                 "@image.exr",
+                "--stats",
+                "@stats.json",
             ],
-            {"script": CYCLES, "scene": scene.path},
-            ["image.exr"],
+            # Its programs; and ours, since times of different days are not compared.
+            {"script": CYCLES, "scene": scene.path, "ours": self.runner.bin / "vpl-render"}
+            | {file.name: file for file in sorted(CYCLES.parent.glob("*.py"))},
+            ["image.exr", "stats.json"],
         )
 
     def halves(self, scene: gallery.Scene) -> list[Path]:
@@ -208,7 +220,7 @@ class Rooms:
             }
             for layer in ("", "direct", "indirect"):
                 ours = self.measures(scene, image, layer)
-                for other, (picture, spp) in others.items():
+                for other, (picture, spp, its_cpu_s) in others.items():
                     # The image of Cycles has one layer.
                     theirs = (
                         None
@@ -224,6 +236,7 @@ class Rooms:
                                 "beside": other,
                                 "cpu_s": f"{seconds:.0f}",
                                 "its_spp": spp,
+                                "its_cpu_s": f"{its_cpu_s:.1f}",
                                 "indirect_share": f"{1 - direct / all_light:.2f}",
                                 **{
                                     column: f"{value:.4g}"

@@ -17,14 +17,13 @@ for Cycles, those that it cannot read (eval/cycles).
 """
 
 import argparse
-import datetime
 import sys
 from pathlib import Path
 
 import rooms_page
 from bnvpl_eval import settings
 from bnvpl_eval.runner import Runner
-from evaluate import commit
+from evaluate import beginning
 from room_images import VARIANTS, Rooms
 from room_list import SCENES, missing
 
@@ -40,6 +39,9 @@ def parse_arguments() -> argparse.Namespace:
         "--bin", type=Path, default=settings.ROOT / "build/release/bin", help="folder of the tools"
     )
     parser.add_argument("--cache", type=Path, default=settings.ROOT / "build/eval/cache")
+    parser.add_argument(
+        "--commit", help="of the tools in --bin; that of the working tree unless given"
+    )
     parser.add_argument("--width", type=int, default=320, help="pixels")
     parser.add_argument(
         "--truth",
@@ -81,8 +83,9 @@ def parse_arguments() -> argparse.Namespace:
 
 def main() -> int:
     arguments = parse_arguments()
+    begin = beginning(arguments.commit)
     runner, references = (
-        Runner(folder.resolve(), arguments.cache.resolve(), quiet=True)
+        Runner(folder.resolve(), arguments.cache.resolve(), True, begin)
         for folder in (arguments.bin, arguments.reference_bin or arguments.bin)
     )
     rooms = Rooms(
@@ -94,8 +97,8 @@ def main() -> int:
         arguments.path_length,
     )
     made = {
-        "tools": commit(),
-        "date": datetime.date.today().isoformat(),
+        "tools": begin["commit"],
+        "date": begin["date"],
         "width": arguments.width,
         "reference": f"2 x {arguments.reference_spp} spp, {arguments.truth}",
         "path_length": arguments.path_length,

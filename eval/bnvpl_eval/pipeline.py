@@ -67,16 +67,6 @@ def sampled(c: Configuration, plan: dict[str, Any]) -> Configuration:
     )
 
 
-MIN_SAMPLE_S = 6e-5  # CPU time for one sample a pixel; less is the noise of two times
-
-
-def samples_within(time_s: float, few: tuple[int, float], many: tuple[int, float]) -> float:
-    """Samples a pixel for a time in CPU seconds, by a line through two trials (samples, CPU s)."""
-    sample_s = max((many[1] - few[1]) / (many[0] - few[0]), MIN_SAMPLE_S)
-    loading_s = max(0.0, few[1] - few[0] * sample_s)
-    return (time_s - loading_s) / sample_s
-
-
 def told(plan: dict[str, Any]) -> str:
     return (
         f"{plan['spp']} samples a pixel with {plan['near_field_rays']} near-field rays each and "

@@ -3,7 +3,7 @@
 A half is the mean of renders of CHUNK samples a pixel with different seeds, so a stopped run
 resumes and a stored half can take more samples. `key` hashes all that the image depends on:
 content of the scene, film, samples, half, integrator. A stored reference whose key differs is
-refused.
+refused. `image` hashes the picture: after a stop between both files neither counts.
 """
 
 import json
@@ -89,6 +89,7 @@ def render_half(runner: Runner, view: View, film: str, spp: int, half: str) -> N
         "half": half,
         "seeds": [stored["seeds"][0] if stored else first_seed, seeds[-1]],
         "cpu_s": round(cpu_s, 1),
+        "image": digest(target.read_bytes()),
     }
     guarded(
         output_guard.write, target.with_suffix(".json"), json.dumps(record, indent=1) + "\n", RECORD
@@ -131,12 +132,15 @@ def _render_chunk(runner: Runner, view: View, film: str, spp: int, seed: int) ->
 
 
 def _stored(view: View, film: str, half: str) -> dict[str, Any] | None:
-    """Record of a stored half, if its scene and integrator match."""
-    record_file = path(view, film, half).with_suffix(".json")
-    if not record_file.is_file():
+    """Record of a stored half, if its scene, integrator and picture match."""
+    image = path(view, film, half)
+    record_file = image.with_suffix(".json")
+    if not (image.is_file() and record_file.is_file()):
         return None
-    record = json.loads(record_file.read_text())
-    return record if record["key"] == reference_key(view, film, record["spp"], half) else None
+    record: dict[str, Any] = json.loads(record_file.read_text())
+    if record["key"] != reference_key(view, film, record["spp"], half):
+        return None
+    return record if record["image"] == digest(image.read_bytes()) else None
 
 
 def reference_key(view: View, film: str, spp: int, half: str) -> str:
@@ -153,14 +157,15 @@ def require(view: View, film: str) -> dict[str, Any]:
     cure = f"eval/references.py --film-width {film.split('x')[0]} {view.name}"
     for half in "ab":
         file = path(view, film, half)
-        if not file.is_file():
+        if not (file.is_file() and file.with_suffix(".json").is_file()):
             raise SystemExit(f"eval: {file}: no such reference; make it with '{cure}'")
-        records[half] = json.loads(file.with_suffix(".json").read_text())
-        if records[half]["key"] != reference_key(view, film, records[half]["spp"], half):
+        record = _stored(view, film, half)
+        if record is None:
             raise SystemExit(
-                f"eval: {file}: made from another version of {view.file} or by another integrator; "
-                f"run '{cure}'"
+                f"eval: {file}: made from another version of {view.file}, by another integrator, "
+                f"or not to its end; run '{cure}'"
             )
+        records[half] = record
     return records
 
 

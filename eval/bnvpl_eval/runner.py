@@ -1,8 +1,9 @@
 """Runs each command of the tools once: outputs are cached under a key of all that they depend on.
 
-A key is the hash of the executable, the options, and the keys or bytes of the inputs. A changed
-option, tool or scene reruns exactly the commands that depend on it. Each run writes run.json beside
-its outputs: command, key, wall and CPU seconds, peak memory.
+A key is the hash of the executable, the options, the number of threads, and the keys or bytes of
+the inputs. A changed option, tool or scene reruns exactly the commands that depend on it. Each run
+writes run.json beside its outputs: command, key, wall and CPU seconds, peak memory. What the tool
+printed is in log.txt, its messages in messages.txt.
 """
 
 import json
@@ -22,6 +23,8 @@ from typing import Any
 
 from .scene_files import NAMING, digest, scene_key
 from .settings import ROOT
+
+DAY_S = 86400
 
 
 class ToolFailed(SystemExit):
@@ -61,6 +64,7 @@ class Runner:
     runs: dict[str, Run] = field(default_factory=dict)  # all requested runs, by key
     limited_tool: str = ""
     limit_cpu_s: float = math.inf  # a run of this tool that needs more is stopped
+    _swept: bool = False  # whether what others left in the cache has been looked for
     _files: dict[Path, str] = field(default_factory=dict)
     # Time and size of each tool when it was first used.
     _tools: dict[Path, tuple[Any, ...]] = field(default_factory=dict)
@@ -92,6 +96,7 @@ class Runner:
                     tool,
                     self.file_key(executable),
                     words,
+                    self.provenance.get("threads"),  # CPU times depend on it
                     {name: self.file_key(path) for name, path in inputs.items()},
                 ]
             ).encode()
@@ -154,9 +159,32 @@ class Runner:
     def _execute(
         self, key: str, executable: Path, words: list[str], inputs: dict[str, Path], folder: Path
     ) -> None:
+        self._sweep()
         partial = folder.with_name(f".{key}.partial-{os.getpid()}")
         shutil.rmtree(partial, ignore_errors=True)
         partial.mkdir(parents=True)
+        try:
+            self._execute_in(partial, key, executable, words, inputs)
+            os.rename(partial, folder)
+        except OSError:
+            if not folder.is_dir():  # else another evaluation has made the same run, of equal bytes
+                raise
+        finally:
+            shutil.rmtree(partial, ignore_errors=True)
+
+    def _sweep(self) -> None:
+        """Removes what processes that are gone left unfinished a day ago or before."""
+        if self._swept:
+            return
+        self._swept = True
+        for left in self.cache.glob(".*.partial-*"):
+            process = left.name.rpartition("-")[2]
+            if not Path("/proc", process).exists() and left.stat().st_mtime < time.time() - DAY_S:
+                shutil.rmtree(left, ignore_errors=True)
+
+    def _execute_in(
+        self, partial: Path, key: str, executable: Path, words: list[str], inputs: dict[str, Path]
+    ) -> None:
         command = [str(executable)]
         for word in words:
             if word.startswith("@"):
@@ -167,11 +195,14 @@ class Runner:
         if not self.quiet:
             print(f"eval: {executable.name} {' '.join(words)}", file=sys.stderr, flush=True)
         begin = time.monotonic()
-        with (partial / "log.txt").open("wb") as log:
+        with (
+            (partial / "log.txt").open("wb") as log,
+            (partial / "messages.txt").open("wb") as messages,
+        ):
             child = subprocess.Popen(
                 command,
                 stdout=log,
-                stderr=subprocess.STDOUT,
+                stderr=messages,
                 cwd=ROOT,
                 preexec_fn=self._set_limit if executable.name == self.limited_tool else None,
             )
@@ -179,16 +210,18 @@ class Runner:
             child.returncode = os.waitstatus_to_exitcode(status)
         wall = time.monotonic() - begin
         if child.returncode != 0:
-            text = (partial / "log.txt").read_text(errors="replace").strip()
-            shutil.rmtree(partial)
+            text = "\n".join(
+                (partial / name).read_text(errors="replace").strip()
+                for name in ("log.txt", "messages.txt")
+            )
             if child.returncode == -signal.SIGXCPU:
                 self._stopped(key).write_text(f"{self.limit_cpu_s}\n")
                 raise TookTooLong
-            raise ToolFailed(command, child.returncode, text)
+            raise ToolFailed(command, child.returncode, text.strip())
         stats = partial / "stats.json"
         peak_mib = usage.ru_maxrss / 1024  # that of this program where it is larger
         if stats.is_file():
-            peak_mib = json.loads(stats.read_text())["peak_memory_MiB"]
+            peak_mib = json.loads(stats.read_text()).get("peak_memory_MiB", peak_mib)
         record = {
             "tool": executable.name,
             "options": words,
@@ -199,8 +232,7 @@ class Runner:
             "peak_mib": round(peak_mib, 1),
             **self.provenance,
         }
-        (partial / "run.json").write_text(json.dumps(record, indent=1))
-        try:
-            os.rename(partial, folder)
-        except OSError:  # another evaluation has made the same run meanwhile, with equal bytes
-            shutil.rmtree(partial)
+        with (partial / "run.json").open("w") as file:
+            json.dump(record, file, indent=1)
+            file.flush()
+            os.fsync(file.fileno())

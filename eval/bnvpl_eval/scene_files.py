@@ -31,7 +31,7 @@ def _names(file: Path, data: bytes) -> Iterator[str]:
 
 
 def _named_by(file: Path, data: bytes, scene: Path) -> Iterator[Path]:
-    """Files relative to the file that names them or, as those of included pbrt files, to the scene."""
+    """Files relative to the file that names them or, as in included pbrt files, to the scene."""
     for name in _names(file, data):
         for spelled in {os.path.expandvars(name), unquote(name)}:
             if not spelled or len(spelled) >= LONGEST_NAME or "\0" in spelled:

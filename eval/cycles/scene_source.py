@@ -36,6 +36,7 @@ class Material:
     two_sided: bool = False
     # Other maps, which are refused if a face uses them.
     maps: list[str] = field(default_factory=list)
+    physical: list[str] = field(default_factory=list)  # lines of the physical model, likewise
     # Parameters of model_scenes.py, which replace the MTL fields.
     model: dict[str, Any] = field(default_factory=dict)
 
@@ -156,8 +157,10 @@ def read_mtl(path: Path, obj: Path) -> dict[str, Material]:
         elif key == "map_Kd" and len(rest) == 1:
             beside = path.parent / rest[0]
             current.map_kd = beside if beside.is_file() else obj.parent / rest[0]
-        elif key.lower().startswith("map_") or key == "bump":
+        elif key.lower().startswith("map_") or key in ("bump", "norm", "disp", "refl"):
             current.maps.append(line.strip())
+        elif key in ("Pr", "Pm", "Pc", "aniso"):
+            current.physical.append(line.strip())
     return materials
 
 
@@ -171,6 +174,8 @@ def check_supported(material: Material, path: Path) -> None:
             problem = "has a refractive index below 1 (Ni)"
     elif any(material.ks) and not material.mirror:
         problem = "has a Phong lobe (Ks)"
+    elif material.physical:
+        problem = f"is of MTL's physical model ({material.physical[0]})"
     elif material.opacity < 0.5 or material.maps:
         problem = "has a mask or a map other than a plain map_Kd"
     elif max(np.add(material.kd, material.ks)) > 1.0:
@@ -281,8 +286,35 @@ def _quarters(corners: npt.NDArray[Any]) -> npt.NDArray[Any]:
     )
 
 
+# What the reader takes from each table of a scene.toml. Anything else would make another scene.
+KEYS = {
+    "": {"film", "camera", "mesh", "light"},
+    "film": {"width", "height"},
+    "camera": {"name", "position", "look_at", "forward", "up", "vertical_fov_deg"},
+    "mesh": {"name", "file", "materials", "transform", "scale", "rotate_deg", "translate"},
+    "light": {"name", "type", "position", "direction", "intensity", "irradiance", "radiance"}
+    | {"angular_diameter_deg", "cone_deg", "falloff_deg", "image", "scale", "rotate_deg"},
+}
+LIGHTS = ("point", "spot", "directional", "environment")
+
+
+def refuse_other_keys(path: Path, table: dict[str, Any]) -> None:
+    tables = [("", table)]
+    for name in ("film", "camera", "mesh", "light"):
+        found = table.get(name, [])
+        tables += [(name, each) for each in (found if isinstance(found, list) else [found])]
+    for name, each in tables:
+        for key in each:
+            if key not in KEYS[name]:
+                where = f"[{name}] {key}" if name else f"[{key}]"
+                raise SceneError(f"{path}: {where} is not mapped to Cycles; leave it out")
+        if name == "light" and each["type"] not in LIGHTS:
+            raise SceneError(f"{path}: light '{each['type']}' is none of {', '.join(LIGHTS)}")
+
+
 def read_scene(path: Path) -> Scene:
     table = read_toml(path)
+    refuse_other_keys(path, table)
     try:
         meshes = []
         for mesh in table.get("mesh", []):

@@ -50,6 +50,22 @@ class Reader(InFolder):
         self.write("m.mtl", mtl)
         return source.read_mesh(self.write("m.obj", OBJ), None, matrix)
 
+    def test_what_would_make_another_scene_is_refused(self) -> None:
+        self.write("m.mtl", MTL)
+        self.write("m.obj", OBJ)
+        film = "[film]\nwidth = 4\nheight = 3\n"
+        camera = "[camera]\nposition = [0, 0, 9]\nlook_at = [0, 0, 0]\nvertical_fov_deg = 40\n"
+        mesh = '[[mesh]]\nfile = "m.obj"\n'
+        source.read_scene(self.write("good.toml", film + camera + mesh))
+        for more, problem in (
+            (camera + "lens_radius = 0.1\n" + mesh, r"\[camera\] lens_radius is not mapped"),
+            (camera + mesh + "[[mesh.instance]]\nscale = 2\n", r"\[mesh\] instance is not mapped"),
+            (camera + mesh + '[[material]]\nname = "A"\n', r"\[material\] is not mapped"),
+            (camera + mesh + '[[light]]\ntype = "area"\n', "light 'area' is none of point, spot"),
+        ):
+            with self.assertRaisesRegex(source.SceneError, problem):
+                source.read_scene(self.write("bad.toml", film + more))
+
     def test_quads_negative_indices_and_triangles_without_area(self) -> None:
         mesh = self.mesh(np.eye(4))
         self.assertEqual(

@@ -7,14 +7,14 @@ from pathlib import Path
 from unittest import mock
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-from bnvpl_eval import pipeline, settings  # noqa: E402 (after the path that it needs)
+from bnvpl_eval import equal_samples, pipeline, settings  # noqa: E402 (after the path that it needs)
 from bnvpl_eval.parts import field  # noqa: E402
 from bnvpl_eval.runner import TookTooLong  # noqa: E402
 
 
 class FittingSamples(unittest.TestCase):
     def fitting(self, preparation_s: float, sample_s: float, time_s: float) -> int:
-        return field.fitting_spp(lambda spp: preparation_s + sample_s * spp, 2, time_s)
+        return equal_samples.fitting_spp(lambda spp: preparation_s + sample_s * spp, 2, time_s)
 
     def test_preparations_are_not_taken_for_samples(self) -> None:
         self.assertEqual(self.fitting(1.5, 0.1, 4.0), 25)
@@ -41,10 +41,10 @@ class FittingSamples(unittest.TestCase):
         def cpu_s(spp: int) -> float:
             return 1.5 + 0.4 * math.pow(spp, 0.7)
 
-        self.assertAlmostEqual(cpu_s(field.fitting_spp(cpu_s, 2, 12.0)), 12.0, delta=0.6)
+        self.assertAlmostEqual(cpu_s(equal_samples.fitting_spp(cpu_s, 2, 12.0)), 12.0, delta=0.6)
 
     def test_no_more_than_the_limit(self) -> None:
-        self.assertEqual(self.fitting(0.0, 1e-6, 4.0), field.MAX_SPP)
+        self.assertEqual(self.fitting(0.0, 1e-6, 4.0), equal_samples.MAX_SPP)
 
 
 class NearLight(unittest.TestCase):

@@ -98,6 +98,23 @@ class References(unittest.TestCase):
         self.assertEqual(self.runner.asked[2:], [("light", 8, 1000), ("light", 8, 1001)])
         self.assertEqual(references.require(light, FILM)["b"]["integrator"], "light")
 
+    def test_a_stop_between_picture_and_record_begins_anew(self) -> None:
+        self.render(self.view, 8)
+        file = references.path(self.view, FILM, "a")
+        record = file.with_suffix(".json")
+        before = record.read_text()
+        self.render(self.view, 16)
+        record.write_text(before)  # as if the new record had not been written
+        with self.assertRaisesRegex(SystemExit, "not to its end"):
+            references.require(self.view, FILM)
+        asked = len(self.runner.asked)
+        self.render(self.view, 16)
+        self.assertEqual(self.runner.asked[asked:], [("light", 16, 1000)])
+        self.assertEqual(references.require(self.view, FILM)["a"]["spp"], 16)
+        record.unlink()
+        with self.assertRaisesRegex(SystemExit, "no such reference"):
+            references.require(self.view, FILM)
+
     def test_another_scene_is_refused_and_none_is_told(self) -> None:
         with self.assertRaisesRegex(SystemExit, "no such reference"):
             references.require(self.view, FILM)

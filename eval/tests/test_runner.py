@@ -1,9 +1,11 @@
 """Tests the cache of runs: only a changed option, input or tool reruns; failures leave nothing."""
 
+import os
 import sys
 import tempfile
 import unittest
 from pathlib import Path
+from unittest import mock
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from bnvpl_eval.runner import Run, Runner, TookTooLong  # noqa: E402 (after the path that it needs)
@@ -12,6 +14,7 @@ TOOL = """#!/bin/sh
 # copies its input behind a line with its options; every run is one line of calls.log
 echo x >> "{log}"
 while [ "$2" = endless ]; do :; done
+[ "$2" = warn ] && {{ echo "{{}}"; echo beware >&2; }}
 [ "$2" = fail ] && {{ echo "made to fail"; exit 3; }}
 {{ echo "$2"; cat "$1"; }} > "$3"
 """
@@ -90,6 +93,35 @@ class Caching(unittest.TestCase):
     def test_provenance_is_in_every_run(self) -> None:
         runner = Runner(self.folder, self.folder / "cache", True, {"commit": "0123abc"})
         self.assertEqual(self.run_tool("a", runner).record["commit"], "0123abc")
+
+    def test_another_number_of_threads_runs_again(self) -> None:
+        for threads in (1, 2, 1):
+            runner = Runner(self.folder, self.folder / "cache", True, {"threads": threads})
+            self.run_tool("a", runner)
+        self.assertEqual(self.calls(), 2)
+
+    def test_messages_are_kept_apart_from_what_is_printed(self) -> None:
+        run = self.run_tool("warn")
+        self.assertEqual(run["log.txt"].read_text(), "{}\n")
+        self.assertEqual(run["messages.txt"].read_text(), "beware\n")
+
+    def test_what_is_interrupted_leaves_nothing(self) -> None:
+        (self.folder / "vpl-fake").unlink()
+        runner = Runner(self.folder, self.folder / "cache", quiet=True)
+        self.tool.mkdir()  # no file that can be run
+        with mock.patch.object(runner, "file_key", return_value=""), self.assertRaises(OSError):
+            self.run_tool("a", runner)
+        self.assertEqual(list((self.folder / "cache").iterdir()), [])
+
+    def test_what_was_killed_long_ago_is_removed(self) -> None:
+        cache = self.folder / "cache"
+        old, running, new = (cache / f".0123.partial-{n}" for n in (4194305, os.getpid(), 4194306))
+        for left in (old, running, new):
+            left.mkdir(parents=True)
+        for left in (old, running):
+            os.utime(left, (0, 0))
+        self.run_tool()
+        self.assertEqual([left.exists() for left in (old, running, new)], [False, True, True])
 
     def test_failure_tells_why_and_leaves_nothing(self) -> None:
         with self.assertRaisesRegex(SystemExit, "exit code 3: made to fail"):

@@ -13,6 +13,7 @@ from typing import Any
 
 from .. import pipeline
 from ..context import Context
+from ..equal_samples import samples_within
 from ..pipeline import sampled, told
 from ..settings import View
 from ..tables import column, table
@@ -37,7 +38,7 @@ def picture_spp(context: Context, view: View, c: pipeline.Configuration, target_
         (spp, pipeline.traced(context.runner, view, c.film, spp, 1)[1][0].cpu_s)
         for spp in TRIAL_SPP
     )
-    return max(1, round(pipeline.samples_within(target_s, few, many)))
+    return max(1, round(samples_within(target_s, few, many)))
 
 
 def balanced(c: pipeline.Configuration, size: dict[str, Any]) -> pipeline.Configuration:

@@ -16,6 +16,7 @@ import numpy as np
 
 from .. import images, measures, pipeline
 from ..context import Context
+from ..equal_samples import TOO_LONG, fitting_spp
 from ..field_methods import KINDS, explanation
 from ..runner import TookTooLong, ToolFailed
 from ..settings import View
@@ -26,11 +27,6 @@ NONE = "none"
 DEFAULT = "tilecuts"  # the gather of vpl-render
 DEFAULTS = (f"{DEFAULT}-near-field", f"{DEFAULT}-none")  # the first that is there is shown first
 EQUAL_VPLS, EQUAL_TIME = "equal VPLs", "equal time"
-MAX_SPP = 1024  # at equal time
-CLOSE_ENOUGH = 0.1  # to the time, for a number of samples that has been run
-SECOND_TRIAL = 0.25  # as a share of the time
-TOO_LONG = 1.25  # times the time, for a run of fewer samples than a first trial has
-MAX_TRIALS = 4
 CONTRIBUTIONS_WIDTH = 40  # pixels; each samples all VPLs
 REFUSED = 2  # exit code of vpl-render
 LAYERS = ("", "indirect")
@@ -185,32 +181,6 @@ def paired(size: dict[str, Any], gather: str, compensate: str) -> bool:
     if compensate in KINDS:
         return gather == DEFAULT and compensate in size["kinds"]
     return compensate in size["compensations"] or gather in size["gathers_with_any"]
-
-
-def fitting_spp(cpu_s: Callable[[int], float], few: int, time_s: float) -> int:
-    """Samples a pixel whose run takes `time_s` CPU seconds; 0 if the run of one sample is too long.
-
-    Preparations take most of the time of a few samples, and further samples may cost less than the
-    first. So lines through two trials lead to the number, which is tried itself. The first line
-    is of short trials, since those are run besides the images that count.
-    """
-    few_s = max(cpu_s(few), 1e-3)
-    if few_s > time_s:
-        spp = round(few * time_s / few_s)
-        while spp > 0 and (few_s if spp == few else cpu_s(spp)) > TOO_LONG * time_s:
-            spp -= 1
-        return spp
-    before = (few, few_s)
-    spp = min(max(math.floor(SECOND_TRIAL * few * time_s / few_s), 2 * few), MAX_SPP)
-    for _ in range(MAX_TRIALS):
-        trial = (spp, cpu_s(spp))
-        if abs(trial[1] - time_s) < CLOSE_ENOUGH * time_s:
-            break
-        fitting = min(MAX_SPP, max(1, round(pipeline.samples_within(time_s, before, trial))))
-        if fitting in (spp, before[0]):
-            return fitting
-        before, spp = trial, fitting
-    return spp
 
 
 def expected_s(rows: list[dict[str, Any]], count: int) -> float:

@@ -8,9 +8,9 @@ from functools import partial
 
 from .. import images, pipeline, statistics
 from ..context import Context
+from ..equal_samples import MAX_SPP, fitting_spp
 from ..settings import View
 from ..tables import column, table
-from .field import MAX_SPP, fitting_spp
 
 COLUMNS = [
     column("label", "gather"),
