@@ -15,6 +15,13 @@ inline bool isRegularFile(const std::filesystem::path& file) {
   return std::filesystem::is_regular_file(file, ignored);
 }
 
+// The path without symbolic links, as far as it exists and can be followed.
+inline std::filesystem::path realPath(const std::filesystem::path& file) {
+  std::error_code failed;
+  std::filesystem::path real = std::filesystem::weakly_canonical(file, failed);
+  return failed ? file.lexically_normal() : real;
+}
+
 // The extension in lower case, such as ".ply"; empty if there is none.
 inline std::string lowerExtension(const std::filesystem::path& file) {
   std::string extension = file.extension().string();

@@ -121,7 +121,7 @@ void OutputFolder::open() {
   for (;;) {
     const fs::path partial = place_.string() + ".partial-" + std::to_string(::getpid()) + "-" +
                              std::to_string(number.fetch_add(1));
-    makeFolder(partial);
+    if (!makeFolder(partial)) continue;  // one that was left behind has this name
     partial_ = partial;
     lock_ = ::open(partial_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     // Another run may have removed it as abandoned in the moment without a lock.
@@ -150,12 +150,14 @@ void OutputFolder::forget() {
   paths_.clear();
 }
 
-void OutputFolder::makeFolder(const fs::path& folder) {
+bool OutputFolder::makeFolder(const fs::path& folder) {
   if (::mkdir(folder.c_str(), 0777) != 0) {
+    if (errno == EEXIST) return false;
     throw OutputError(target_, std::string("cannot write: ") + std::strerror(errno) +
                                    "; choose a folder in one that exists and is writable");
   }
   remember(folder);
+  return true;
 }
 
 fs::path OutputFolder::add(const fs::path& name) {

@@ -40,7 +40,7 @@ class OutputFolder {
   void open();
   void remember(const fs::path& path);
   void forget();
-  void makeFolder(const fs::path& folder);
+  bool makeFolder(const fs::path& folder);
   void writeList();
 
   fs::path target_, place_, partial_;  // target as given; with links resolved; folder being filled

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <unordered_map>
 
 namespace bnvpl {
 
@@ -23,7 +24,7 @@ SceneBuilder::SceneBuilder(fs::path sceneFile, OnWarning onWarning)
 }
 
 void SceneBuilder::changeFilm(const std::function<Film(const Film&)>& changed, size_t first) {
-  if (!including()) scene_.film = changed(scene_.film);
+  if (!including() || scene_.views.size() == first) scene_.film = changed(scene_.film);
   for (size_t i = first; i < scene_.views.size(); ++i)
     scene_.views[i].film = changed(scene_.views[i].film);
 }
@@ -167,44 +168,66 @@ size_t SceneBuilder::addPart(const fs::path& file, Mesh mesh, const Affine& tran
   return grey;
 }
 
+// The mesh of some of its triangles, with the vertices that they use alone.
+SceneBuilder::KeptMesh SceneBuilder::KeptMesh::part(std::vector<Triangle> of) const {
+  KeptMesh out{file, {}, {}, {}, std::move(of), transform};
+  const auto take = [&](const std::vector<double>& from, size_t each, std::vector<double>& to,
+                        std::array<uint32_t, 3> Triangle::*corners) {
+    std::unordered_map<uint32_t, uint32_t> numbers;
+    for (Triangle& t : out.triangles) {
+      for (uint32_t& corner : t.*corners) {
+        if (corner >= from.size() / each) continue;  // none
+        const auto [it, isNew] = numbers.try_emplace(corner, uint32_t(to.size() / each));
+        if (isNew) to.insert(to.end(), &from[each * corner], &from[each * corner] + each);
+        corner = it->second;
+      }
+    }
+  };
+  take(positions, 3, out.positions, &Triangle::position);
+  take(normals, 3, out.normals, &Triangle::normal);
+  take(uvs, 2, out.uvs, &Triangle::uv);
+  return out;
+}
+
 // Stores a mesh in its prototype. Emissive triangles go to the world instead, once for each
 // instance.
-void SceneBuilder::shareMesh(const KeptMesh& kept, uint32_t prototype) {
+void SceneBuilder::shareMesh(const KeptMesh& kept, uint32_t prototype,
+                             const std::vector<Placed>& uses) {
   std::vector<Triangle> rest, lamps;
   for (const Triangle& t : kept.triangles) {
     const bool lamp = materialNumber(t) != kNone && !isBlack(materialOf(t).emission);
     (lamp ? lamps : rest).push_back(t);
   }
-  const auto uses = static_cast<size_t>(std::ranges::count(placed_, prototype, &Placed::prototype));
-  if (lamps.size() * uses > kMaxLamps) {
+  if (lamps.size() * uses.size() > kMaxLamps) {
     throw InputError(kept.file, "is placed so often that its lamps are more than " +
                                     std::to_string(kMaxLamps) + " triangles; place it less often");
   }
-  for (const Placed& p : placed_) {
-    if (p.prototype == prototype && !lamps.empty())
-      addPart(kept.file, kept.mesh(lamps), p.toWorld * kept.transform, p.object);
+  if (!lamps.empty()) {
+    const KeptMesh shining = kept.part(std::move(lamps));
+    for (const Placed& p : uses)
+      addPart(kept.file, shining.mesh(shining.triangles), p.toWorld * kept.transform, p.object);
   }
   if (rest.empty()) return;
   shared_ = prototype;
-  addPart(kept.file, kept.mesh(std::move(rest)), kept.transform, objectOfAll(prototype));
+  addPart(kept.file, kept.mesh(std::move(rest)), kept.transform, objectOfAll(uses));
   shared_ = kNone;
-  scene_.meshes[meshOfName_.at(kept.file.string())].instances += uses - 1;
+  scene_.meshes[meshOfName_.at(kept.file.string())].instances += uses.size() - 1;
 }
 
 void SceneBuilder::placePrototypes() {
   open_ = kNone;
+  std::vector<std::vector<Placed>> uses(prototypes_.size());
+  for (const Placed& p : placed_) uses[p.prototype].push_back(p);
   for (uint32_t p = 0; p < prototypes_.size(); ++p) {
-    const auto uses = std::ranges::count(placed_, p, &Placed::prototype);
     for (const KeptMesh& kept : prototypes_[p]) {
-      if (uses > 1) shareMesh(kept, p);
-      if (uses != 1) continue;
-      const auto placed = std::ranges::find(placed_, p, &Placed::prototype);
-      addPart(kept.file, kept.mesh(kept.triangles), placed->toWorld * kept.transform,
-              placed->object);
+      if (uses[p].size() > 1) shareMesh(kept, p, uses[p]);
+      if (uses[p].size() != 1) continue;
+      const Placed& placed = uses[p].front();
+      addPart(kept.file, kept.mesh(kept.triangles), placed.toWorld * kept.transform, placed.object);
     }
-    if (uses == 1) std::erase_if(placed_, [&](const Placed& o) { return o.prototype == p; });
     prototypes_[p] = {};
   }
+  std::erase_if(placed_, [&](const Placed& p) { return uses[p.prototype].size() == 1; });
 }
 
 }  // namespace bnvpl

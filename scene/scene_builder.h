@@ -58,6 +58,7 @@ class SceneBuilder {
 
   // Changes the film of all cameras from number `first` on, and of the scene if it has none.
   void changeFilm(const std::function<Film(const Film&)>& changed, size_t first);
+  const Film& film() const { return scene_.film; }
   void setFilm(const Film& film) {
     changeFilm([&](const Film&) { return film; }, 0);
   }
@@ -188,6 +189,7 @@ class SceneBuilder {
     std::vector<Triangle> triangles;
     Affine transform;
     Mesh mesh(std::vector<Triangle> of) const { return {positions, normals, uvs, std::move(of)}; }
+    KeptMesh part(std::vector<Triangle> of) const;
   };
   struct Placed {
     uint32_t prototype;
@@ -222,7 +224,7 @@ class SceneBuilder {
   void giveSurfaces(const fs::path& file, Mesh& mesh);
   // Adds a mesh whose triangles have surfaces; `object`, unless kNone, replaces theirs.
   size_t addPart(const fs::path& file, Mesh mesh, const Affine& transform, uint32_t object);
-  uint32_t objectOfAll(uint32_t prototype) const;
+  static uint32_t objectOfAll(const std::vector<Placed>& uses);
   Corners cornersOf(const Triangle& t) const {
     return {points_[t.position[0]], points_[t.position[1]], points_[t.position[2]]};
   }
@@ -233,9 +235,11 @@ class SceneBuilder {
   void warnOfPixels(const std::string& image, size_t negative, size_t pixels,
                     const std::string& damage);
   uint32_t greyMaterial();
+  // Whether the expression uses an image that could not be read.
+  bool lacksImage(uint32_t expression) const;
   void recordMesh(const std::string& name, size_t triangles);
 
-  void shareMesh(const KeptMesh& kept, uint32_t prototype);
+  void shareMesh(const KeptMesh& kept, uint32_t prototype, const std::vector<Placed>& uses);
   // Steps of finish(), in this order:
   void placePrototypes();
   void resolveTextures();

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/files.h"
 #include "scene/scene_builder.h"
 
 namespace bnvpl {
@@ -30,8 +31,8 @@ bool turnsAboutY(const Affine& place) {
 }  // namespace
 
 std::string SceneBuilder::whyNotInclude(const fs::path& file) const {
-  const fs::path real = fs::weakly_canonical(file);
-  const auto isThis = [&](const fs::path& other) { return fs::weakly_canonical(other) == real; };
+  const fs::path real = realPath(file);
+  const auto isThis = [&](const fs::path& other) { return realPath(other) == real; };
   if (isThis(scene_.files.front()) || std::ranges::any_of(includes_, isThis, &Include::file))
     return "includes itself; remove one of the [[mesh]]";
   if (includes_.size() == kDeepestInclude)

@@ -1,6 +1,7 @@
 // The part of SceneBuilder that adds materials, textures and images.
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 #include "core/files.h"
 #include "core/read_file.h"
@@ -17,13 +18,19 @@ constexpr uint32_t kMaxLookups = 1000;
 
 constexpr const char* kGrey = "it is grey";
 
-bool hasTexture(const Material& m) {
+bool hasTexture(const std::vector<Material>& materials, const Material& m) {
   bool any = false;
   const auto use = [&](uint32_t number) { any |= number != kNone; };
   forEachImage(m, use);
   forEachExpression(m, use);
+  if (const auto* mix = std::get_if<MixModel>(&m.model)) {
+    for (const uint32_t part : {mix->first, mix->second})
+      any = any || (part != kNone && hasTexture(materials, materials[part]));
+  }
   return any;
 }
+
+bool hasRelief(const Material& m) { return !m.relief.flat() || !m.coatRelief.flat(); }
 
 }  // namespace
 
@@ -87,13 +94,23 @@ uint32_t SceneBuilder::addOwnMaterial(Material material) {
   if (const auto* mix = std::get_if<MixModel>(&material.model)) {
     for (const uint32_t part : {mix->first, mix->second}) {
       assert(part == kNone || part < scene_.materials.size());
-      if (part != kNone) parts += mixParts_[part];
+      if (part == kNone) continue;
+      parts += mixParts_[part];
+      if (hasRelief(scene_.materials[part]) && !hasRelief(material)) {
+        warn(name() + ": mix '" + material.name + "' has no relief, as '" +
+             scene_.materials[part].name + "' in it has; give the mix a relief of its own");
+      }
     }
     if (parts > kMaxLookups) {
       warn(name() + ": material '" + material.name + "' mixes too many materials; it is grey");
       material.model = DiffuseModel{};
       parts = 1;
     }
+  }
+  if (including()) {  // heights grow with what they are of
+    const auto size = static_cast<float>(std::cbrt(std::fabs(place_.determinant())));
+    for (Relief* relief : {&material.relief, &material.coatRelief})
+      if (relief->bumpMap != kNone && !relief->heightInTexels) relief->strength *= size;
   }
   mixParts_.push_back(parts);
   scene_.materials.push_back(std::move(material));
@@ -125,6 +142,13 @@ std::optional<Vec3> SceneBuilder::constantValue(uint32_t expression) const {
     if (operand != kNone && !constantValue(operand)) return {};
   }
   return TextureEvaluator(scene_.expressions, {}).at(expression, 0.0f, 0.0f);
+}
+
+bool SceneBuilder::lacksImage(uint32_t expression) const {
+  if (expression == kNone) return false;
+  const TextureExpression& e = scene_.expressions[expression];
+  if (e.kind == TextureExpression::Kind::Image && e.image == kNone) return true;
+  return lacksImage(e.first) || lacksImage(e.second) || lacksImage(e.amount);
 }
 
 uint32_t SceneBuilder::greyMaterial() {
@@ -212,7 +236,10 @@ void SceneBuilder::foldConstants() {
     std::visit([&](auto& model) { forEachField(model, field); }, m.model);
     take(m.emissionTexture, [&](Vec3 v) { m.emission = m.emission * v; });
     take(m.opacityTexture, [&](Vec3 v) { m.opacity *= v.x; });
-    for (Relief* relief : {&m.relief, &m.coatRelief}) take(relief->bumpMap, [](Vec3) {});
+    for (Relief* relief : {&m.relief, &m.coatRelief}) {
+      take(relief->bumpMap, [](Vec3) {});
+      if (lacksImage(relief->normalMap)) relief->normalMap = kNone;
+    }
   }
 }
 
@@ -223,7 +250,7 @@ void SceneBuilder::warnOfMissingUvs() {
     for (; next < part.endTriangle; ++next) {
       const Triangle& t = scene_.triangles[next];
       const Material& m = materialOf(t);
-      if (warned[materialNumber(t)] || !hasTexture(m)) continue;
+      if (warned[materialNumber(t)] || !hasTexture(scene_.materials, m)) continue;
       if (std::find(t.uv.begin(), t.uv.end(), kNone) == t.uv.end()) continue;
       warned[materialNumber(t)] = true;
       warn(part.file.string() + ": " +

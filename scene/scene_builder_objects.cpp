@@ -47,10 +47,9 @@ void SceneBuilder::giveSurfaces(const fs::path& file, Mesh& mesh) {
 
 // The object that stands for a prototype whose instances are all objects of their own: that of the
 // first. kNone if one is not.
-uint32_t SceneBuilder::objectOfAll(uint32_t prototype) const {
+uint32_t SceneBuilder::objectOfAll(const std::vector<Placed>& uses) {
   uint32_t first = kNone;
-  for (const Placed& p : placed_) {
-    if (p.prototype != prototype) continue;
+  for (const Placed& p : uses) {
     if (p.object == kNone) return kNone;
     if (first == kNone) first = p.object;
   }

@@ -1,5 +1,6 @@
 #include "transport/shading_frame.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace bnvpl {
@@ -30,17 +31,23 @@ Vec3 mappedNormal(const Scene& scene, const Relief& relief, const SurfacePoint& 
   return normalize(m);
 }
 
-// The normal of the displaced surface (Blinn 1978), by central differences over a texel.
+// The normal of the displaced surface (Blinn 1978), by central differences over a texel. A height
+// in texels rises by their difference over one texel in each direction.
 Vec3 bumpedNormal(const Scene& scene, const Relief& relief, const SurfacePoint& hit, Vec3 n,
                   Vec3 dpdu, Vec3 dpdv) {
   const TextureEvaluator texture(scene.expressions, scene.textures);
-  const float step = texture.step(relief.bumpMap);
+  const bool inTexels = relief.heightInTexels;
+  auto [stepU, stepV] = texture.texelSize(relief.bumpMap);
+  constexpr float kCoarsest = 1.0f / 256;
+  if (!inTexels) stepU = std::min(stepU, kCoarsest), stepV = std::min(stepV, kCoarsest);
   const auto height = [&](float u, float v) { return texture.at(relief.bumpMap, u, v).x; };
-  const float scale = relief.strength / (relief.heightInTexels ? 2.0f : 2.0f * step);
-  const float du = scale * (height(hit.u + step, hit.v) - height(hit.u - step, hit.v)),
-              dv = scale * (height(hit.u, hit.v + step) - height(hit.u, hit.v - step));
+  const float half = 0.5f * relief.strength;
+  const float du = half * (height(hit.u + stepU, hit.v) - height(hit.u - stepU, hit.v)) /
+                   (inTexels ? 1.0f : stepU),
+              dv = half * (height(hit.u, hit.v + stepV) - height(hit.u, hit.v - stepV)) /
+                   (inTexels ? 1.0f : stepV);
   Vec3 u = dpdu - n * dot(n, dpdu), v = dpdv - n * dot(n, dpdv);
-  if (relief.heightInTexels) u = normalize(u), v = normalize(v);
+  if (inTexels) u = normalize(u), v = normalize(v);
   const Vec3 flat = cross(u, v), m = cross(u + n * du, v + n * dv);
   return normalize(dot(flat, n) < 0.0f ? -m : m);
 }

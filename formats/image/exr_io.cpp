@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <stdexcept>
 
 #include "core/files.h"
@@ -155,7 +156,8 @@ void readPixels(Imf::InputPart& in, Image& image) {
 Image readChecked(const fs::path& file) {
   refuseDishonestAttributes(file);
   // Without a limit OpenEXR allocates its line table before it reads.
-  Imf::Header::setMaxImageSize(kMaxExrSide, kMaxExrSide);
+  static std::once_flag limited;
+  std::call_once(limited, [] { Imf::Header::setMaxImageSize(kMaxExrSide, kMaxExrSide); });
   // Not Imf::InputFile: that allocates lines and tiles of any size as it opens the file, and takes
   // deep images.
   Imf::MultiPartInputFile parts(file.c_str(), kNoThreads, /*reconstructChunkOffsetTable=*/false);

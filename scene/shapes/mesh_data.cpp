@@ -8,6 +8,12 @@ void MeshData::addTriangle(uint32_t a, uint32_t b, uint32_t c) {
       {corners, normals.empty() ? none : corners, uvs.empty() ? none : corners, kNone});
 }
 
+void MeshData::giveUvs() {
+  if (!uvs.empty()) return;
+  uvs = {0, 0, 1, 0, 1, 1};
+  for (Triangle& t : triangles) t.uv = {0, 1, 2};
+}
+
 void MeshData::windByNormals() {
   if (normals.empty()) return;
   const auto at = [](const std::vector<double>& of, uint32_t i, size_t c) { return of[3 * i + c]; };

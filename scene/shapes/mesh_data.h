@@ -20,6 +20,8 @@ struct MeshData {
   size_t vertices() const { return positions.size() / 3; }
   // Adds a triangle. Normals and uvs, if the mesh has them, have the indices of the positions.
   void addTriangle(uint32_t a, uint32_t b, uint32_t c);
+  // Gives a mesh without uvs those of pbrt: (0, 0), (1, 0), (1, 1) at the corners of each triangle.
+  void giveUvs();
   // Flips windings that disagree with their normals, which define the outside in pbrt.
   void windByNormals();
   // Swaps outside and inside.

@@ -82,7 +82,7 @@ Vec3 TextureEvaluator::at(uint32_t expression, float u, float v) const {
     case TextureExpression::Kind::Constant:
       return e.value;
     case TextureExpression::Kind::Image: {
-      if (e.image == kNone) return max(e.invert ? Vec3(1) - e.value : e.value, Vec3());
+      if (e.image == kNone) return Vec3(1);
       const Vec3 c = e.value * channelOf(e.channel, texelsAt(textures_[e.image], e, tu, tv));
       return max(e.invert ? Vec3(1) - c : c, Vec3());
     }
@@ -111,17 +111,31 @@ Vec3 TextureEvaluator::mean(uint32_t expression) const {
   return Vec3(float(sum[0]), float(sum[1]), float(sum[2])) * (1.0f / (kSide * kSide));
 }
 
-float TextureEvaluator::step(uint32_t expression) const {
-  constexpr float kCoarsest = 1.0f / 256;
-  if (expression == kNone) return kCoarsest;
+std::array<float, 2> TextureEvaluator::texelSize(uint32_t expression) const {
+  constexpr float kNoImage = 1.0f / 256;
+  const auto found = finestTexel(expression);
+  return {found[0] < kLargestTexel ? found[0] : kNoImage,
+          found[1] < kLargestTexel ? found[1] : kNoImage};
+}
+
+std::array<float, 2> TextureEvaluator::finestTexel(uint32_t expression) const {
+  std::array<float, 2> finest{kLargestTexel, kLargestTexel};
+  if (expression == kNone) return finest;
   const TextureExpression& e = expressions_[expression];
-  float finest = std::min({kCoarsest, step(e.first), step(e.second)});
   if (e.kind == TextureExpression::Kind::Image && e.image != kNone) {
     const Texture& t = textures_[e.image];
-    const float scale = std::max({std::fabs(e.uv.a), std::fabs(e.uv.b), std::fabs(e.uv.d),
-                                  std::fabs(e.uv.e), 1e-3f}) *
-                        std::max({std::fabs(t.scale[0]), std::fabs(t.scale[1]), 1e-3f});
-    finest = std::min(finest, 1.0f / (scale * static_cast<float>(std::max(t.width, t.height))));
+    const float width = std::fabs(t.scale[0]) * static_cast<float>(t.width),
+                height = std::fabs(t.scale[1]) * static_cast<float>(t.height);
+    const auto texels = [&](float across, float up) {  // that a unit of a coordinate passes
+      return std::max(std::fabs(across) * width, std::fabs(up) * height);
+    };
+    constexpr float kFewest = 1.0f / kLargestTexel;
+    return {1.0f / std::max(texels(e.uv.a, e.uv.d), kFewest),
+            1.0f / std::max(texels(e.uv.b, e.uv.e), kFewest)};
+  }
+  for (const uint32_t operand : {e.first, e.second, e.amount}) {
+    const auto its = finestTexel(operand);
+    for (size_t k = 0; k < 2; ++k) finest[k] = std::min(finest[k], its[k]);
   }
   return finest;
 }

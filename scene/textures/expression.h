@@ -35,14 +35,15 @@ enum class Channel : uint32_t { Rgb, Red, Green, Blue, Alpha, Mean };
 struct TextureExpression {
   enum class Kind : uint32_t {
     Constant,     // value
-    Image,        // max(0, value * texel), or max(0, 1 - value * texel) where `invert`
+    Image,        // max(0, value * texel), or max(0, 1 - value * texel) where `invert`;
+                  // 1 without an image
     Product,      // first * second
     Mix,          // (1 - amount) * first + amount * second
     Checkerboard  // first where floor(u') + floor(v') is even, else second
   };
   Kind kind = Kind::Constant;
   Vec3 value{1, 1, 1};
-  uint32_t image = kNone;  // into Scene::textures; kNone: the texel is 1
+  uint32_t image = kNone;  // into Scene::textures
   Channel channel = Channel::Rgb;
   Wrap wrapU = Wrap::Repeat, wrapV = Wrap::Repeat;
   bool invert = false;
@@ -92,10 +93,13 @@ class TextureEvaluator {
   Vec3 at(uint32_t expression, float u, float v) const;
   // Mean over texture coordinates in 0..1, estimated on a grid of 64 x 64.
   Vec3 mean(uint32_t expression) const;
-  // Size of about one texel of the expression's finest image in texture coordinates, at most 1/256.
-  float step(uint32_t expression) const;
+  // Changes of u and of v that pass one texel of the expression's finest image; 1/256 without one.
+  std::array<float, 2> texelSize(uint32_t expression) const;
 
  private:
+  static constexpr float kLargestTexel = 1e3f;
+  std::array<float, 2> finestTexel(uint32_t expression) const;  // kLargestTexel without an image
+
   std::span<const TextureExpression> expressions_;
   std::span<const Texture> textures_;
 };

@@ -181,6 +181,30 @@ TEST(Instances, EmitWhereTheyStand) {
   EXPECT_NEAR(lamps.totalPower().x, same.totalPower().x, 1e-4f * same.totalPower().x);
 }
 
+// A mesh of many vertices of which three emit is stored once, and these three in each place.
+TEST(Instances, LampsAreStoredWithTheirOwnVerticesOnly) {
+  SceneBuilder builder("lamps");
+  Material lamp;
+  lamp.emission = Vec3(1);
+  const uint32_t shining = builder.addMaterial(lamp), dark = builder.addMaterial({});
+  std::vector<double> positions;
+  std::vector<Triangle> triangles;
+  for (uint32_t i = 0; i < 100; ++i) {
+    positions.insert(positions.end(), {double(i), 0, 0, double(i) + 1, 0, 0, double(i), 1, 0});
+    triangles.push_back(
+        {{3 * i, 3 * i + 1, 3 * i + 2}, kNoCorners, kNoCorners, i ? dark : shining});
+  }
+  const uint32_t prototype = builder.beginPrototype();
+  builder.addMesh("m.obj", {positions, {}, {}, triangles});
+  builder.endPrototype();
+  for (int k = 0; k < 50; ++k)
+    builder.addInstance(prototype, turned(0.0, {1, 1, 1}, {0, 0, 2.0 * k}));
+  const Scene scene = builder.finish();
+  EXPECT_LT(scene.positions.size(), 300u + 50 * 3 + 10);
+  const Accelerator accel(scene);
+  EXPECT_EQ(LightSet(accel).size(), 50u);
+}
+
 TEST(Instances, TheHashKnowsWhereTheyStand) {
   const auto hashOf = [](double x) {
     SceneBuilder builder("tents");

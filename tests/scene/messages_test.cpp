@@ -65,6 +65,56 @@ TEST_F(Messages, WhatReplacesATextureDependsOnItsUse) {
   expectWarning(damaged, "supply a PNG, JPEG, EXR, HDR, PFM, TGA or BMP file; the surface has no relief");
 }
 
+TEST_F(Messages, ANormalMapThatCannotBeReadIsNoRelief) {
+  write("broken.png", "\x89PNG\r\n\x1a\n");
+  const Scene s = loadMesh(kSquareObj, "newmtl paint\nKd 1 1 1\nnorm broken.png\n");
+  expectWarning(s, "the surface has no relief");
+  EXPECT_TRUE(materialNamed(s, "paint").relief.flat());
+  const std::string image = "[[texture]]\nname = \"t\"\ntype = \"image\"\nimage = \"gone.png\"\n";
+  const Scene product =
+      load(base_ + image +
+           "[[texture]]\nname = \"p\"\ntype = \"product\"\nfirst = \"t\"\nsecond = \"t\"\n"
+           "[[material]]\nname = \"paint\"\nmodel = \"diffuse\"\nnormal_map = \"p\"\n");
+  EXPECT_TRUE(materialNamed(product, "paint").relief.flat());
+}
+
+// No hole, and no mirror for want of a gloss map.
+TEST_F(Messages, AnInvertedTextureThatIsMissingLeavesThePlainValue) {
+  const Scene s = load(base_ +
+                       "[[texture]]\nname = \"t\"\ntype = \"image\"\nimage = \"gone.png\"\n"
+                       "factor = [0.5, 0.5, 0.5]\ninvert = true\n"
+                       "[[material]]\nname = \"paint\"\nmodel = \"diffuse\"\n"
+                       "reflectance = [0.3, 0.3, 0.3]\nreflectance_texture = \"t\"\n"
+                       "opacity = 0.75\nopacity_texture = \"t\"\n");
+  const Material& m = materialNamed(s, "paint");
+  EXPECT_EQ(std::get<DiffuseModel>(m.model).reflectance.value, Vec3(0.3f));
+  EXPECT_EQ(m.opacity, 0.75f);
+}
+
+TEST_F(Messages, AMixThatLosesTheReliefOfAPartSaysSo) {
+  write("n.tga", tga(1, 1, {{128, 128, 255, 255}}));
+  std::string bare = kSquareObj;
+  bare.replace(bare.find("f 1/1"), std::string::npos, "f 1 2 3 4\n");
+  write("square.obj", bare);
+  const Scene s = load(
+      base_ +
+      "[[texture]]\nname = \"n\"\ntype = \"image\"\nimage = \"n.tga\"\n"
+      "[[material]]\nname = \"rough\"\nmodel = \"diffuse\"\nnormal_map = \"n\"\n"
+      "reflectance_texture = \"n\"\n"
+      "[[material]]\nname = \"paint\"\nmodel = \"mix\"\nfirst = \"rough\"\nsecond = \"rough\"\n");
+  expectWarning(s, "mix 'paint' has no relief, as 'rough' in it has");
+  expectWarning(s, "'paint' has a texture but faces without texture coordinates");
+}
+
+TEST_F(Messages, AnEmptyListOfInstancesIsNamed) {
+  for (const char* file : {"square.obj", "inner.toml"}) {
+    write("inner.toml", mesh_);
+    const Scene s = load(base_ + "[[mesh]]\nfile = \"" + file + "\"\ninstance = []\n");
+    EXPECT_EQ(s.triangles.size(), 2u) << file;
+    expectWarning(s, "scene.toml:12: [[mesh]]: is an empty list, so that the mesh stands nowhere");
+  }
+}
+
 TEST_F(Messages, OfAnMtlHaveLineAndMaterial) {
   const Scene s =
       loadMesh(kSquareObj, "newmtl paint\nKd nan 1 1\nNs -3\ndisp d.png\nmap_Kd -mm 1 2 c.png\n");

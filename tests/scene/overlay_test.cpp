@@ -84,6 +84,10 @@ TEST_F(Overlay, ItsFilmAndCameraComeFirst) {
   EXPECT_EQ(pbrt.film.width, 20u) << "that of the file";
   EXPECT_TRUE(isMirrored(pbrt.camera)) << "as the camera that it replaces";
   EXPECT_FALSE(isMirrored(load(camera + "mirrored = false\n" + mesh("room.pbrt")).camera));
+  write("sub/film.toml", "[film]\nwidth = 20\nheight = 10\n[[mesh]]\nfile = \"square.obj\"\n");
+  EXPECT_EQ(load(camera + mesh("film.toml")).film.width, 20u) << "that of a file without camera";
+  EXPECT_EQ(load(kFilmAndCamera + mesh("film.toml")).film.width, 8u);
+  EXPECT_EQ(load(mesh("film.toml")).film.width, 20u) << "for the view of the whole";
   const Scene two = load(mesh("room.glb") + mesh("room.pbrt"));
   ASSERT_EQ(two.views.size(), 2u);
   EXPECT_EQ(two.film.width, 960u);
@@ -110,6 +114,18 @@ TEST_F(Overlay, ALensIsScaledWithItsFile) {
   EXPECT_NEAR(camera.lensRadius, 0.02f, 1e-6f);
   EXPECT_NEAR(camera.focusDistance, 3.0f, 1e-5f);
   EXPECT_NE(loadError(mesh("lens.pbrt", "scale = 1e8\n")).find("lens"), std::string::npos);
+}
+
+// So that the picture stays the same. A height in texels has no scale.
+TEST_F(Overlay, ABumpIsScaledWithItsFile) {
+  write("sub/bumpy.toml",
+        "[[texture]]\nname = \"t\"\ntype = \"image\"\nimage = \"dot.tga\"\n"
+        "[[material]]\nname = \"paint\"\nmodel = \"diffuse\"\nbump_map = \"t\"\n"
+        "relief_strength = 2\ncoat_bump_map = \"t\"\ncoat_bump_in_texels = true\n"
+        "coat_relief_strength = 2\n[[mesh]]\nfile = \"square.obj\"\n");
+  const Scene s = load(kFilmAndCamera + mesh("bumpy.toml", "scale = 0.5\n"));
+  EXPECT_FLOAT_EQ(materialNamed(s, "paint").relief.strength, 1.0f);
+  EXPECT_FLOAT_EQ(materialNamed(s, "paint").coatRelief.strength, 2.0f);
 }
 
 TEST_F(Overlay, TheFiltersOfFilesCountUnlessTheFilmNamesOne) {

@@ -273,6 +273,15 @@ TEST_F(SceneToml, AMaterialReplacesThatOfItsName) {
   EXPECT_EQ(m.opacityCutoff, 0.25f);
 }
 
+TEST_F(SceneToml, AnEmissionTextureAloneShines) {
+  const std::string texture =
+      "[[texture]]\nname = \"t\"\ntype = \"constant\"\nvalue = [1, 2, 3]\n"
+      "[[material]]\nname = \"paint\"\nmodel = \"diffuse\"\nemission_texture = \"t\"\n";
+  EXPECT_EQ(materialNamed(load(base_ + texture), "paint").emission, Vec3(1, 2, 3));
+  const Scene dark = load(base_ + texture + "emission = [0, 0, 0]\n");
+  EXPECT_EQ(materialNamed(dark, "paint").emission, Vec3());
+}
+
 TEST_F(SceneToml, AMaterialThatNoFaceHasIsNamed) {
   const Scene scene = load(base_ + "[[material]]\nname = \"pain\"\nmodel = \"diffuse\"\n");
   ASSERT_EQ(scene.warnings.size(), 2u);  // the other one: no light
@@ -291,6 +300,7 @@ TEST_F(SceneToml, MistakesInMaterialsAndTextures) {
               {"no [[texture]] 't' stands before this"});
   expectError(material + "model = \"mix\"\nfirst = \"paint\"\n", 13,
               {"no [[material]] 'paint' stands before this"});
+  expectError(material + "model = \"mix\"\n", 10, {"[[material]]", "needs 'first'"});
   expectError(material + "model = \"diffuse\"\nemission_sides = 3\n", 13, {"from 1 to 2"});
   expectError(material + "model = \"dielectric\"\nthin = 1\n", 13, {"true or false"});
   expectError(material + "model = \"diffuse\"\n[[material]]\nname = \"paint\"\nmodel = \"mix\"\n",

@@ -114,6 +114,29 @@ TEST(Relief, BumpMapTiltsByItsSlope) {
   }
 }
 
+// A height in texels rises over one texel in each direction, whatever the image is stretched to.
+TEST(Relief, HeightsInTexelsFollowTheTexelsOfEachDirection) {
+  for (const std::array<float, 2> scale : {std::array{1.0f, 1.0f}, {4.0f, 1.0f}, {1.0f, 8.0f}}) {
+    Material m = mapped(&Relief::bumpMap, 5.0f);
+    m.relief.heightInTexels = true;
+    Scene scene = square(m);
+    Texture ramp;
+    ramp.width = 64, ramp.height = 16;
+    ramp.srgb = false;
+    ramp.scale = scale;
+    for (int row = 0; row < 16; ++row) {
+      for (int column = 0; column < 64; ++column) {
+        const auto value = uint8_t(2 * column + 4 * (15 - row));
+        ramp.rgba.insert(ramp.rgba.end(), {value, value, value, 255});
+      }
+    }
+    scene.textures.push_back(ramp);
+    scene.expressions.push_back(imageExpression(0));
+    expectNear(hitFrom(scene, {0.3f, 0.6f, 2}).ns,
+               normalize({-5.0f * 2 / 255, -5.0f * 4 / 255, 1}));
+  }
+}
+
 // The opacity texture has its own cutoff.
 TEST(Relief, OpacityTextureCutsAway) {
   for (const float cutoff : {0.2f, 0.4f}) {

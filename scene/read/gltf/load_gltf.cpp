@@ -38,8 +38,11 @@ class Meshes {
       builder_.addInstance(*prototype, world * instance, object);
   }
   // The joints of a skin place the mesh; glTF ignores the transform of its node.
-  void addPosed(size_t mesh, const GltfPose& pose, const Affine& world, uint32_t object) {
-    builder_.addInstance(read(mesh, pose), pose.joints.empty() ? world : Affine(), object);
+  void addPosed(size_t mesh, const GltfPose& pose, const Affine& world,
+                const std::vector<Affine>& instances, uint32_t object) {
+    const uint32_t prototype = read(mesh, pose);
+    for (const Affine& instance : instances)
+      builder_.addInstance(prototype, pose.joints.empty() ? world * instance : instance, object);
   }
 
  private:
@@ -76,7 +79,7 @@ void readGltf(const fs::path& file, const Defines&, SceneBuilder& builder) {
     if (pose.rests())
       meshes.add(mesh, placement.world, instancesOf(model, placement.node), object);
     else
-      meshes.addPosed(mesh, pose, placement.world, object);
+      meshes.addPosed(mesh, pose, placement.world, instancesOf(model, placement.node), object);
   }
 }
 

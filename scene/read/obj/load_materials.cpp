@@ -23,14 +23,16 @@ Vec3 nonNegative(Vec3 c) { return isFinite(c) ? max(c, Vec3{}) : Vec3{}; }
 
 bool isGlass(int illum) { return illum == 4 || illum == 6 || illum == 7 || illum == 9; }
 
-void readGlass(const tinyobj::material_t& in, Vec3 ks, const std::string& where,
-               SceneBuilder& builder, PhongModel& m) {
+void readGlass(const tinyobj::material_t& in, const MtlKeys& keys, Vec3 ks,
+               const std::string& where, SceneBuilder& builder, PhongModel& m) {
   m.glass = true;
   m.diffuse = {};
   m.mirror = isBlack(ks) ? Vec3{1, 1, 1} : min(ks, Vec3{1, 1, 1});
-  const bool index = in.ior >= 1.0 && in.ior <= kMaxIor;
+  const bool stated = keys.has("Ni"), index = stated && in.ior >= 1.0 && in.ior <= kMaxIor;
   m.ior = index ? static_cast<float>(in.ior) : 1.5f;
-  if (!index) builder.warn(where + "Ni is not a refractive index from 1 to 100; 1.5 is used");
+  if (!stated) builder.warn(where + "is glass without Ni, its refractive index; 1.5 is used");
+  if (stated && !index)
+    builder.warn(where + "Ni is not a refractive index from 1 to 100; 1.5 is used");
   const Vec3 tf = nonNegative(toVec3(in.transmittance));
   m.transmission = isBlack(tf) ? Vec3{1, 1, 1} : min(tf, Vec3{1, 1, 1});
 }
@@ -51,7 +53,7 @@ void readPhong(const tinyobj::material_t& in, const MtlKeys& keys, const MtlMaps
   const Vec3 ks = nonNegative(toVec3(in.specular));
   const auto exponent = static_cast<float>(in.shininess);
   p.exponent = std::isfinite(exponent) ? std::clamp(exponent, 0.0f, kMaxExponent) : 0.0f;
-  if (isGlass(in.illum)) return readGlass(in, ks, where, builder, p);
+  if (isGlass(in.illum)) return readGlass(in, keys, ks, where, builder, p);
   readOpaque(in, keys, ks, m);
   m.opacity = std::isfinite(in.dissolve) ? static_cast<float>(in.dissolve) : 1.0f;
   const float limit = maxComponent(p.diffuse + p.glossy + p.mirror);

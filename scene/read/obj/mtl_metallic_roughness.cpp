@@ -62,10 +62,12 @@ float transmissionOf(const tinyobj::material_t& in, const MtlKeys& keys) {
 }
 
 // Replaces `amount` of the model by glass of the same roughness.
-void addGlass(const tinyobj::material_t& in, float amount, SceneBuilder& builder, Material& m) {
+void addGlass(const tinyobj::material_t& in, const MtlKeys& keys, float amount,
+              SceneBuilder& builder, Material& m) {
   const auto& base = std::get<MetallicRoughnessModel>(m.model);
   DielectricModel glass;
-  glass.ior = std::isfinite(in.ior) ? std::clamp(static_cast<float>(in.ior), 1.0f, 100.0f) : 1.5f;
+  if (keys.has("Ni") && std::isfinite(in.ior))
+    glass.ior = std::clamp(static_cast<float>(in.ior), 1.0f, 100.0f);
   glass.roughness = Roughness(base.roughness, Roughness::Alpha::Square);
   glass.transmission = base.baseColour;
   if (amount >= 1.0f) {
@@ -90,7 +92,7 @@ void readMetallicRoughness(const tinyobj::material_t& in, const MtlKeys& keys, c
   if (keys.has("map_refl") && !keys.has("map_Pm"))
     warn("map_refl is ignored: it is metal throughout");
   if (const float amount = transmissionOf(in, keys); amount > 0.0f)
-    addGlass(in, amount, builder, m);
+    addGlass(in, keys, amount, builder, m);
   const bool stated = keys.has("d") || keys.has("Tr");  // Tr is 1 - d
   if (stated && in.dissolve > 0.0f && in.dissolve < 1.0f) {
     addTransparency({static_cast<float>(in.dissolve)}, builder, m);

@@ -45,10 +45,10 @@ Pixels pixelsOf(const Description& description) {
   film.width = static_cast<uint32_t>(p.integer("xresolution", 1280, 1, kMaxFilmSide));
   film.height = static_cast<uint32_t>(p.integer("yresolution", 720, 1, kMaxFilmSide));
   out.right = film.width, out.bottom = film.height;
-  if (const Param* crop = p.find("cropwindow", {ParamType::Float}, "four floats"))
-    readCrop(*crop, false, out);
   if (const Param* crop = p.find("pixelbounds", {ParamType::Integer}, "four integers"))
     readCrop(*crop, true, out);
+  if (const Param* crop = p.find("cropwindow", {ParamType::Float}, "four floats"))
+    readCrop(*crop, false, out);  // it counts where both are given
   p.ignore({"filename", "savefp16", "diagonal", "maxcomponentvalue", "quickrender", "nbuckets",
             "lambdamin", "lambdamax", "coordinatesystem"});
   return out;

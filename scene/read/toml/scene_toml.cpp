@@ -17,7 +17,7 @@ void setView(const fs::path& file, const toml::table& root, size_t first, SceneB
   const bool mirrored = others && isMirrored(views[first].camera);
   const TomlView view = readTomlView(file, root, mirrored);
   if (view.camera) {
-    const Film film = others ? views[first].film : Film();
+    const Film film = others ? views[first].film : builder.film();
     builder.dropCameras(first);
     builder.addCamera("", view.position, *view.camera, film);
   }

@@ -120,7 +120,6 @@ uint32_t TomlSurfaces::texture(const TomlSection& s, const std::string& key) con
 }
 
 uint32_t TomlSurfaces::material(const TomlSection& s, const char* key) {
-  if (!s.has(key)) return kNone;
   mixed_.insert(s.text(key));
   return s.known(key, "[[material]]", materials_);
 }
@@ -162,6 +161,7 @@ void TomlSurfaces::readMaterial(const toml::table& table) {
 }
 
 void TomlSurfaces::readCommon(const TomlSection& s, Material& m) const {
+  if (s.has("emission_texture")) m.emission = Vec3(1);
   if (s.has("emission")) m.emission = s.color("emission");
   m.emissionTexture = texture(s, "emission_texture");
   m.twoSidedEmission = s.has("emission_sides") && s.integer("emission_sides", 1, 2) == 2;

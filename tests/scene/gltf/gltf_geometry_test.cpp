@@ -237,6 +237,24 @@ TEST_F(GltfGeometry, MorphTargetsHaveTheirWeights) {
   expectCorners(s, 1, {Vec3{5, 0, 1}, Vec3{6, 0, 0}, Vec3{5, 1.5f, 0}});
 }
 
+TEST_F(GltfGeometry, AMorphedMeshHasAllItsInstances) {
+  Gltf g = cornerGltf();
+  const size_t target = g.addAccessor(floats({0, 0, 4, 0, 0, 0, 0, 2, 0}), 3, "VEC3"),
+               moves = g.addAccessor(floats({1, 0, 0, 0, 0, 7}), 2, "VEC3");
+  g.add("meshes",
+        "{\"weights\":[0.5],\"primitives\":[{\"attributes\":{\"POSITION\":0},\"targets\":"
+        "[{\"POSITION\":" +
+            std::to_string(target) + "}]}]}");
+  g.show(
+      "{\"mesh\":0,\"translation\":[0,5,0],\"extensions\":{\"EXT_mesh_gpu_instancing\":{"
+      "\"attributes\":{\"TRANSLATION\":" +
+      std::to_string(moves) + "}}}}");
+  const Scene s = load(g);
+  ASSERT_EQ(s.instances.size(), 2u);
+  expectCorners(s, 0, {Vec3{1, 5, 2}, Vec3{2, 5, 0}, Vec3{1, 7, 0}});
+  expectCorners(s, 1, {Vec3{0, 5, 9}, Vec3{1, 5, 7}, Vec3{0, 7, 7}});
+}
+
 // Exporters write shape keys that move a few of many vertices in this form.
 TEST_F(GltfGeometry, MorphTargetsOfManyVerticesMayBeSparse) {
   constexpr size_t kVertices = 69'999;

@@ -75,6 +75,15 @@ TEST_F(Mtl, TransmissionIsGlass) {
   EXPECT_FLOAT_EQ(std::get<MixModel>(of(half).model).amount.value, 0.5f);
 }
 
+TEST_F(Mtl, GlassWithoutNiRefracts) {
+  const Scene smooth = paint("newmtl paint\nillum 7\n");
+  EXPECT_EQ(of(smooth).phong().ior, 1.5f);
+  EXPECT_EQ(countContaining(smooth.warnings, "is glass without Ni"), 1u) << joined(smooth.warnings);
+  EXPECT_EQ(of(paint("newmtl paint\nNi 1\nillum 7\n")).phong().ior, 1.0f);
+  const Scene rough = paint("newmtl paint\nKd 1 1 1\nPr 0.2\nillum 7\n");
+  EXPECT_EQ(std::get<DielectricModel>(of(rough).model).ior.value, 1.5f);
+}
+
 TEST_F(Mtl, PartlyTransparentIsSeenThrough) {
   const Scene s =
       paint(kBlender + "newmtl paint\nNs 250\nKd 0.8 0.8 0.8\nKs 0.5 0.5 0.5\nd 0.4\nillum 9\n");

@@ -71,7 +71,8 @@ TEST_F(PbrtCamera, CropsArePartOfTheFilm) {
   const std::string film = "Film \"rgb\" \"integer xresolution\" 100 \"integer yresolution\" 80 ";
   const Scene whole = view(camera + film);
   for (const char* crop :
-       {"\"float cropwindow\" [0.1 0.5 0.25 0.75]", "\"integer pixelbounds\" [10 50 20 60]"}) {
+       {"\"float cropwindow\" [0.1 0.5 0.25 0.75]", "\"integer pixelbounds\" [10 50 20 60]",
+        "\"float cropwindow\" [0.1 0.5 0.25 0.75] \"integer pixelbounds\" [0 99 0 79]"}) {
     const Scene s = view(camera + film + crop);
     ASSERT_EQ(s.film.width, 40u);
     ASSERT_EQ(s.film.height, 40u);

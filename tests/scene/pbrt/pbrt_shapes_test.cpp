@@ -45,6 +45,27 @@ TEST_F(PbrtShapes, MirrorsAndReverseOrientationTurnTheOutside) {
   EXPECT_EQ(outward(shape("Scale -1 1 1 ReverseOrientation " + sphere), {}), 0.0);
 }
 
+// pbrt-v4, Triangle and BilinearPatch: (0, 0), (1, 0), (1, 1) of triangles, and (0, 1) of quads.
+TEST_F(PbrtShapes, MeshesWithoutTextureCoordinatesHaveThoseOfTheirFaces) {
+  const auto expectUvs = [&](const std::string& text,
+                             const std::vector<std::array<float, 2>>& all) {
+    const Scene s = shape(text);
+    std::vector<std::array<float, 2>> found;
+    for (const Triangle& t : s.triangles)
+      for (const uint32_t uv : t.uv) found.push_back(s.uvs.at(uv));
+    EXPECT_EQ(found, all) << text;
+  };
+  const std::array<float, 2> a{0, 0}, b{1, 0}, c{1, 1}, d{0, 1};
+  const std::string points = " \"point3 P\" [-1 -1 0  1 -1 0  1 1 0  -1 1 0]";
+  expectUvs("Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3]" + points,
+            {a, b, c, a, b, c});
+  write("quad.ply",
+        "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+        "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+        "-1 -1 0\n1 -1 0\n1 1 0\n-1 1 0\n4 0 1 2 3\n");
+  expectUvs("Shape \"plymesh\" \"string filename\" \"quad.ply\"", {a, b, c, a, c, d});
+}
+
 TEST_F(PbrtShapes, DisksAndCylinders) {
   const Scene ring = shape(
       "Shape \"disk\" \"float radius\" 2 \"float innerradius\" 1 "

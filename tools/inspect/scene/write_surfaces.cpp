@@ -67,8 +67,10 @@ void Surfaces::material(uint32_t number) {
   add("model", inQuotes(nameOf(m.model)));
   const auto each = [&](const char* key, const auto& value) { field(key, value); };
   std::visit([&](const auto& model) { forEachField(model, each); }, m.model);
-  if (!isBlack(m.emission)) add("emission", listText(m.emission));
-  addTexture("emission_texture", m.emissionTexture);
+  if (!isBlack(m.emission)) {
+    add("emission", listText(m.emission));
+    addTexture("emission_texture", m.emissionTexture);
+  }
   if (m.twoSidedEmission) add("emission_sides", "2");
   opacity(m, number);
   relief(m.relief, "");

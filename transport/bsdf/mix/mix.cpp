@@ -20,10 +20,8 @@ void addLobes(const MixModel& model, const MaterialInputs& inputs, Vec3 weight, 
 }
 
 ModelReport describe(const Scene& scene, const MixModel& m) {
-  return {"mix",
-          {{"first", scene.materials[m.first].name},
-           {"second", scene.materials[m.second].name},
-           {"amount", m.amount}}};
+  const auto name = [&](uint32_t part) { return part == kNone ? "" : scene.materials[part].name; };
+  return {"mix", {{"first", name(m.first)}, {"second", name(m.second)}, {"amount", m.amount}}};
 }
 
 MtlModel toMtl(const Scene& scene, const MixModel& m) {

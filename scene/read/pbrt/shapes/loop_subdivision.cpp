@@ -174,6 +174,7 @@ MeshData loopSubdivision(const Params& params, const Place& place) {
     mesh.positions.insert(mesh.positions.end(), point.begin(), point.end());
   mesh.normals = normalsOf(s);
   for (const auto& [a, b, c] : s.faces) mesh.addTriangle(a, b, c);
+  mesh.giveUvs();
   // The ring about a vertex runs clockwise in pbrt, so that its normals are against the winding.
   mesh.reverse();
   return mesh;

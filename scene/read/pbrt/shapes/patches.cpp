@@ -90,6 +90,7 @@ MeshData triangleMesh(const Params& params, const Place& place) {
   mesh.triangles.reserve(indices.size() / 3);
   for (size_t i = 0; i < indices.size(); i += 3)
     mesh.addTriangle(indices[i], indices[i + 1], indices[i + 2]);
+  mesh.giveUvs();
   mesh.windByNormals();
   return mesh;
 }

@@ -193,9 +193,11 @@ void requireVertices(const fs::path& file, const Faces& faces, const MeshData& m
   }
 }
 
-// Triangulates the faces. Returns the number of those that cross themselves.
+// Triangulates the faces. Returns the number of those that cross themselves. Without uvs, pbrt has
+// (0, 0), (1, 0), (1, 1) and (0, 1) at the corners of a triangle or quad.
 size_t cutFaces(const Faces& faces, MeshData& mesh) {
   size_t crossing = 0;
+  const bool bare = mesh.uvs.empty();
   mesh.triangles.reserve(faces.counts.size());
   std::vector<FilePoint> outline;
   std::vector<std::array<uint32_t, 3>> cut;
@@ -208,9 +210,15 @@ size_t cutFaces(const Faces& faces, MeshData& mesh) {
       outline.push_back({p[0], p[1], p[2]});
     }
     crossing += !triangulate(outline, QuadCut::FirstCorner, cut);
-    for (const auto& [a, b, c] : cut) mesh.addTriangle(first[a], first[b], first[c]);
+    for (const auto& [a, b, c] : cut) {
+      mesh.addTriangle(first[a], first[b], first[c]);
+      if (!bare) continue;
+      mesh.triangles.back().uv = {0, 1, 2};
+      if (count <= 4) mesh.triangles.back().uv = {a, b, c};
+    }
     first += count;
   }
+  if (bare) mesh.uvs = {0, 0, 1, 0, 1, 1, 0, 1};
   mesh.pieces = faces.counts.size();
   return crossing;
 }

@@ -65,7 +65,7 @@ const std::unordered_map<std::string_view, Parser::Directive>& Parser::directive
 }
 
 void Parser::readFile(const fs::path& file, const Place* from) {
-  const fs::path real = fs::weakly_canonical(file);
+  const fs::path real = realPath(file);
   if (std::find(reading_.begin(), reading_.end(), real) != reading_.end())
     failAt(*from, file.string() + " includes itself; remove one of the Includes");
   if (reading_.size() == kDeepestInclude || included_ == kMaxIncludes) {
