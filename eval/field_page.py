@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""Writes the table of docs/field.md from results of `make -C eval field`.
+"""Adds results of `make -C eval field` to docs/field.csv, and makes the tables of docs/field.md.
 
     eval/field_page.py build/eval/field
 
-A row for each gather: relMSE of the indirect light of each scene at equal time, without
+The rows of each scene replace those of an earlier run with as wide a film, so that scenes can be
+run one by one. The page shows the widest films. A row for each gather: relMSE of the indirect light of each scene at equal time, without
 compensation and with the default one, and shadow rays at as many VPLs.
 The least error of a scene is bold, and with it those that lie within the standard errors of both.
 A second table has the gathers that are too slow for that, at the least number of VPLs, a third one
@@ -11,18 +12,54 @@ the default gather with every compensation and kind of light.
 """
 
 import argparse
+import csv
+import io
 import json
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from bnvpl_eval import settings
+from bnvpl_eval import output, settings
 from rooms_page import put
 
 PAGE = settings.ROOT / "docs/field.md"
 COMPENSATIONS = ("none", "near-field")  # the second is the default of vpl-render
 DEFAULT = "tilecuts"  # its gather
 Row = dict[str, Any]
+
+
+# What docs/field.csv keeps of a row.
+COLUMNS = (
+    *("scene", "gather", "compensate", "at", "vpls", "spp", "film", "seeds"),
+    *("mean_ratio", "relmse", "relmse_error", "rmse_over_mean", "smape", "flip"),
+    *("bias_over_mean", "std_over_mean", "render_cpu_s", "shadow_rays", "render_peak_mib"),
+)
+TEXTS = ("scene", "gather", "compensate", "at", "film", "tools", "date")
+ROWS = settings.ROOT / "docs/field.csv"
+
+
+def width_of(row: Row) -> int:
+    return int(str(row["film"]).split("x")[0])
+
+
+def kept(found: dict[str, Any]) -> list[Row]:
+    """The rows of a results.json as docs/field.csv has them."""
+    made = {"tools": found["provenance"]["commit"], "date": found["provenance"]["date"]}
+    rows = [r for r in found["results"] if r["part"] == "field"]
+    return [{key: r.get(key, "") for key in COLUMNS} | made for r in rows]
+
+
+def read() -> list[Row]:
+    if not ROWS.is_file():
+        return []
+    rows = csv.DictReader(io.StringIO(ROWS.read_text()))
+    return [{k: v if k in TEXTS or not v else float(v) for k, v in row.items()} for row in rows]
+
+
+def merged(before: list[Row], rows: list[Row]) -> list[Row]:
+    """All rows; the new ones stand for all of their scenes and films."""
+    anew = {(r["scene"], r["film"]) for r in rows}
+    return [r for r in before if (r["scene"], r["film"]) not in anew] + rows
 
 
 def value(row: Row) -> str:
@@ -34,13 +71,14 @@ def within_the_best(rows: list[Row]) -> list[Row]:
     if not rows:
         return []
     best = min(rows, key=lambda r: float(r["relmse"]))
-    limit = best["relmse"] + best.get("relmse_error", 0.0)
-    return [r for r in rows if r["relmse"] - r.get("relmse_error", 0.0) <= limit]
+    limit = best["relmse"] + (best["relmse_error"] or 0.0)
+    return [r for r in rows if r["relmse"] - (r["relmse_error"] or 0.0) <= limit]
 
 
 def table(results: list[Row], gathers: Iterable[str] = ()) -> str:
     """A row for each gather that has one; those of `gathers` that have none are named below."""
-    rows = [r for r in results if r["part"] == "field"]
+    widest = max((width_of(r) for r in results), default=0)
+    rows = [r for r in results if width_of(r) == widest]
     at_time = [r for r in rows if r["at"] == "equal time"]
     if not at_time:
         raise SystemExit("field_page: no row at equal time; docs/field.md has those of such a size")
@@ -111,7 +149,7 @@ def few_vpls(rows: list[Row], scenes: list[str], gathers: list[str]) -> str:
 
     lines = [
         f"Too slow for this time: {', '.join(gathers)}. Beside the default, with {count:,} VPLs,",
-        f"no compensation and spp {spp} (CPU seconds in brackets; -: beyond the limit):",
+        f"no compensation and spp {spp:.0f} (CPU seconds in brackets; -: beyond the limit):",
         "",
         "| gather | " + " | ".join(scenes) + " |",
         "|---" * (1 + len(scenes)) + "|",
@@ -131,8 +169,9 @@ def main() -> None:
     found = json.loads((arguments.folder / "results.json").read_text())
     folders = (settings.ROOT / "tools/render/gather").glob("*/theory.md")
     gathers = [theory.parent.name.replace("_", "-") for theory in folders]
-    made = f"<!-- tools of {found['provenance']['commit']}, {found['provenance']['date']} -->"
-    put(PAGE, "field", f"{table(found['results'], gathers)}\n\n{made}")
+    rows = merged(read(), kept(found))
+    output.write_csv(ROWS, rows)
+    put(PAGE, "field", table(rows, gathers))
 
 
 if __name__ == "__main__":

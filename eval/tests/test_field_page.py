@@ -1,17 +1,20 @@
 """Tests the table of docs/field.md."""
 
 import sys
+import tempfile
 import unittest
 from pathlib import Path
 from typing import Any
+from unittest import mock
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import field_page  # noqa: E402 (after the path that it needs)
+from bnvpl_eval import output  # noqa: E402
 
 
 def row(gather: str, at: str, vpls: int, relmse: float, **more: Any) -> dict[str, Any]:
     made: dict[str, Any] = {
-        "part": "field",
+        "film": "24x18",
         "scene": "a room",
         "gather": gather,
         "compensate": "none",
@@ -76,6 +79,34 @@ class FieldPage(unittest.TestCase):
                 "| tilecuts | 0.5 (10) |",
                 "| b | 0.4 (10) |",
             ],
+        )
+
+    def test_the_widest_films_are_shown(self) -> None:
+        made = self.table(
+            row("a", "equal time", 1000, 0.3), row("a", "equal time", 1000, 0.1, film="8x6")
+        )
+        self.assertEqual(made[2][1], "**0.3**")
+
+    def test_rows_of_a_scene_replace_those_of_an_earlier_run(self) -> None:
+        def found(scene: str, film: str, relmse: float, part: str = "field") -> dict[str, Any]:
+            one = row("a", "equal time", 1000, relmse, scene=scene, film=film, part=part)
+            return {"results": [one], "provenance": {"commit": "abc", "date": "2026-01-01"}}
+
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "field.csv"
+            with mock.patch.object(field_page, "ROWS", file):
+                for results in (
+                    found("hall", "8x6", 0.1),
+                    found("hall", "24x18", 0.2),
+                    found("attic", "24x18", 0.3),
+                    found("hall", "24x18", 0.4),
+                    found("attic", "24x18", 9.0, "methods"),
+                ):
+                    rows = field_page.merged(field_page.read(), field_page.kept(results))
+                    output.write_csv(file, rows)
+                shown = [(r["scene"], r["film"], r["relmse"]) for r in field_page.read()]
+        self.assertEqual(
+            shown, [("hall", "8x6", 0.1), ("attic", "24x18", 0.3), ("hall", "24x18", 0.4)]
         )
 
     def test_a_size_without_equal_time_has_no_table(self) -> None:
