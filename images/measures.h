@@ -26,6 +26,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 
 #include "images/image_pair.h"
 #include "images/quantity.h"
@@ -34,8 +35,10 @@ namespace bnvpl {
 
 double meanSquaredError(const ImagePair& pair, const Quantity& quantity);
 
-// RMSE / mean; 0 for an exact image, also with a black reference.
-inline double rmseOverMean(double rmse, double meanB) { return rmse > 0.0 ? rmse / meanB : 0.0; }
+// RMSE / |mean|; 0 for an exact image, also with a black reference.
+inline double rmseOverMean(double rmse, double meanB) {
+  return rmse > 0.0 ? rmse / std::fabs(meanB) : 0.0;
+}
 
 inline constexpr double kRelMseEpsilon = 1e-4;  // default epsilon
 // `absoluteEpsilon` is e, the same for all quantities of an image.

@@ -101,6 +101,20 @@ TEST_F(CompareCli, OptionsThatMakeNoSenseExitWith2) {
   EXPECT_FALSE(fs::exists(at("d.png")));
 }
 
+// As layers of positions and normals have.
+TEST_F(CompareCli, AnErrorOverANegativeMeanIsPositive) {
+  Image minus = readExr(at("b.exr"));
+  for (const float value : {-1.0f, -2.0f}) {
+    for (ImageChannel& channel : minus.channels) std::ranges::fill(channel.data, value);
+    writeExr(at(value > -2.0f ? "one.exr" : "two.exr"), minus, ExrPixelType::Float);
+  }
+  const std::string pair = "compare " + path("one.exr") + " " + path("two.exr");
+  const Json found = Json::parse(runInspect(pair + " --json").output);
+  EXPECT_NEAR(found["rmse_over_mean"].get<double>(), 0.5, 1e-6);
+  EXPECT_EQ(runInspect(pair + " --max-rmse-over-mean 0.4").code, kExitDifferent);
+  EXPECT_EQ(runInspect(pair + " --max-rmse-over-mean 0.6").code, kExitOk);
+}
+
 TEST_F(CompareCli, AMaskChoosesThePixels) {
   std::vector<uint8_t> rgb8(4 * 3 * 3, 0);
   rgb8[0] = rgb8[1] = rgb8[2] = 255;
@@ -135,6 +149,17 @@ TEST_F(CompareCli, CropsCountWhereTheyHavePixels) {
     EXPECT_EQ(cropped["channels"], masked["channels"]);
     EXPECT_EQ(cropped["mask_pixels"], 4.0);
   }
+  // FLIP sees the same surroundings in both: as if the reference were a crop, too.
+  Image reference = readExr(at("b.exr"));
+  reference.dataWindow = crop.dataWindow;
+  writeExr(at("crop-b.exr"), reference, ExrPixelType::Float);
+  const auto measured = [&](const char* b) {
+    return Json::parse(
+        runInspect("compare " + path("crop.exr") + " " + path(b) + " --json").output);
+  };
+  const Json ofWhole = measured("b.exr"), ofCrop = measured("crop-b.exr");
+  for (const char* measure : {"flip", "hdr_flip", "rmse"})
+    EXPECT_EQ(ofWhole[measure], ofCrop[measure]) << measure;
   crop.dataWindow = PixelBox{2, 0, 4, 2};
   writeExr(at("other.exr"), crop, ExrPixelType::Float);
   const Outcome apart = runInspect("compare " + path("crop.exr") + " " + path("other.exr"));

@@ -114,6 +114,18 @@ TEST_F(Info, DescribesAnImage) {
   EXPECT_TRUE(contains(text, "1 not finite")) << text;
 }
 
+// Outside of its window a crop holds no values, and zeros in memory.
+TEST_F(Info, TheFiguresOfACropAreThoseOfItsWindow) {
+  Image crop = flatImage(4, 3, 0, 0, 0);
+  crop.dataWindow = PixelBox{1, 1, 3, 2};
+  for (ImageChannel& channel : crop.channels) channel.data[5] = 2.0f, channel.data[6] = 4.0f;
+  writeExr(at("crop.exr"), crop, ExrPixelType::Float);
+  const Json info = describeFile(at("crop.exr"));
+  EXPECT_EQ(columnOf(info, "G")["min"], 2.0);
+  EXPECT_EQ(columnOf(info, "G")["mean"], 3.0);
+  EXPECT_TRUE(contains(infoText(info), "a crop: columns 1 to 2, rows 1 to 1")) << infoText(info);
+}
+
 TEST_F(Info, RefusesWhatIsNeither) {
   writeAll(at("a.txt"), "text");
   writeAll(at("a.vpl"), "text");

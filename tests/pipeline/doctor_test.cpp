@@ -52,6 +52,15 @@ TEST_F(Doctor, FindsNothingInAGoodRoom) {
   EXPECT_EQ(tool("vpl-inspect", "doctor " + path("good.toml")).out, text.out);
 }
 
+TEST_F(Doctor, WarningsOfReadingAreErrorsWithStrict) {
+  room("good.toml", 1.0, 1.9, true);
+  EXPECT_EQ(tool("vpl-inspect", "doctor --strict " + path("good.toml")).code, kExitOk);
+  write("unused.toml",
+        readAll(at("good.toml")) + "[[material]]\nname = \"nobody has it\"\nmodel = \"diffuse\"\n");
+  EXPECT_EQ(tool("vpl-inspect", "doctor " + path("unused.toml")).code, kExitOk);
+  EXPECT_EQ(tool("vpl-inspect", "doctor --strict " + path("unused.toml")).code, kExitInput);
+}
+
 TEST_F(Doctor, FindsALampThatFacesAWall) {
   room("wall.toml", 1.0, 1.9999, false);
   EXPECT_TRUE(contains(found("wall.toml"), "'lamp' shines into a surface right before it"))

@@ -158,6 +158,8 @@ TEST_F(Files, AnOutputReplacesNoFileOfAnotherKind) {
     refused("vpl-render", render + path(std::string("x") + name + ".exr"),
             {"is not an OpenEXR image", "-o"}, kExitOutput);
   }
+  write("short.exr", "\x76\x2f\x31\x01\x02");  // as a full disk leaves it
+  refused("vpl-render", render + path("short.exr"), {"is not an OpenEXR image"}, kExitOutput);
   fs::copy(at("image.exr"), at("wrong.vpl"));
   fs::copy(at("image.exr"), at("wrong.png"));
   fs::copy(at("lit.vpl"), at("wrong.csv"));

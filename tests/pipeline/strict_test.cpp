@@ -97,5 +97,23 @@ TEST_F(Strict, ProgressAsJson) {
   EXPECT_GE(last.at("done").get<int>(), 5000);
 }
 
+// Every shard repeats the pilots of --method both, and counts them by its share.
+TEST_F(Strict, ProgressOfAShardEndsAtItsShare) {
+  makeStages(scene_);
+  const Outcome part = tool("vpl-estimate", scene_ + " " + path("vpls.vpl") +
+                                                " --photons 400k --shard 1/8 --quiet "
+                                                "--progress json -o " +
+                                                path("1.shard"));
+  ASSERT_EQ(part.code, kExitOk) << part.err;
+  std::istringstream lines(part.err);
+  nlohmann::json last;
+  for (std::string line; std::getline(lines, line);) {
+    last = nlohmann::json::parse(line);
+    EXPECT_LE(last.at("done").get<int>(), last.value("total", 50000)) << line;
+  }
+  EXPECT_EQ(last.at("total"), 50000);
+  EXPECT_GT(last.at("done").get<int>(), 40000);
+}
+
 }  // namespace
 }  // namespace bnvpl

@@ -7,6 +7,7 @@
 #include "tests/support/threads.h"
 #include "tests/support/z_test.h"
 #include "tools/render/film/partial_film.h"
+#include "tools/render/render.h"
 #include "tools/render/stage_options.h"
 
 namespace bnvpl::test {
@@ -289,6 +290,12 @@ TEST(Passes, SppLimitsTheirNumber) {
   EXPECT_EQ(budgetOf(resolveRender({{"spp", "33"}, {"passes", "3"}}))->passes, 3u);
   EXPECT_EQ(budgetOf(resolveRender({{"time", "1.5m"}}))->timeS, 90.0);
   EXPECT_THROW(resolveRender({{"time", "1m"}, {"spp", "7"}}), UsageError);
+}
+
+// So that the time left is not that of the largest number that --spp takes.
+TEST(Passes, WithoutSppTheirNumberHasNoLimit) {
+  EXPECT_EQ(budgetOf(resolveRender({{"target-error", "0.1"}}))->spp, UINT64_MAX);
+  EXPECT_EQ(budgetOf(resolveRender({{"target-error", "0.1"}, {"spp", "64"}}))->spp, 64u);
 }
 
 }  // namespace

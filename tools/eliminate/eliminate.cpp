@@ -15,9 +15,12 @@ constexpr auto kOptions = optionTable(kEliminateCountOption);
 void requireEnough(size_t candidates, uint64_t count) {
   if (candidates > INT32_MAX) throw InputError("more than 2^31 - 1 candidates; place fewer");
   if (count <= candidates) return;
+  const std::string cure = count > INT32_MAX / 20
+                               ? "keep fewer"
+                               : "rerun vpl-place -n " + std::to_string(count * 20) +
+                                     " (20 to 40 x " + std::to_string(count) + ")";
   throw InputError("asked to keep " + std::to_string(count) + " of " + std::to_string(candidates) +
-                   " candidates; rerun vpl-place -n " + std::to_string(count * 20) +
-                   " (20 to 40 x " + std::to_string(count) + ")");
+                   " candidates; " + cure);
 }
 
 }  // namespace

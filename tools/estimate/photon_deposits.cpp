@@ -140,9 +140,10 @@ PhotonSums tracePhotons(const EstimateInputs& in, const PhotonRun& run, const De
   const auto photonsOf = [&](size_t range) {
     return std::min(kPhotonsPerRange, perLight.total() - range * kPhotonsPerRange);
   };
-  for (size_t range = 0; progress && range < done.size(); ++range) {
-    if (done[range] == 1) progress(photonsOf(range));
-  }
+  uint64_t doneBefore = 0;  // reported at once, as it says nothing of the speed
+  for (size_t range = 0; range < done.size(); ++range)
+    if (done[range] == 1 && controls.shard.has(range)) doneBefore += photonsOf(range);
+  if (progress && doneBefore > 0) progress(doneBefore);
   const auto soFar = [&] {
     PhotonSums total = before;
     for (const PhotonSums& s : perThread) total.add(s);

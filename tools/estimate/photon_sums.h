@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/errors.h"
 #include "tools/estimate/emit_points.h"
 
 namespace bnvpl {
@@ -48,7 +49,7 @@ class FixedPoint {
 
 inline void addChecked(int64_t& sum, int64_t term) {
   if (__builtin_add_overflow(sum, term, &sum)) {
-    throw std::overflow_error("flux sum exceeds its fixed-point range; lower --photons");
+    throw InputError("a sum of flux exceeds 63 bits; lower --photons or --max-bounces");
   }
 }
 

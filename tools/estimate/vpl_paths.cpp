@@ -118,10 +118,10 @@ PathResult tracePathsOfAll(const EstimateInputs& in, const VplPaths& vplPaths,
   const WorkControls& controls = in.controls;
   std::vector<uint8_t> done = unitsToDo(unitsOf(sums.size()), controls.shard);
   const auto endOf = [&](size_t unit) { return std::min(sums.size(), (unit + 1) * kVplsPerUnit); };
-  const auto reportUnit = [&](size_t unit) {
+  const auto pathsOfUnit = [&](size_t unit) {
     uint64_t all = 0;
     for (size_t i = unit * kVplsPerUnit; i < endOf(unit); ++i) all += points[i];
-    in.progress(vplPaths.pathsOf(all));
+    return vplPaths.pathsOf(all);
   };
   const auto ofUnit = [&](size_t unit) {
     const size_t begin = unit * kVplsPerUnit;
@@ -151,16 +151,17 @@ PathResult tracePathsOfAll(const EstimateInputs& in, const VplPaths& vplPaths,
     takeArray(bytes, result.groups);
     requireAllTaken(bytes);
   }
-  for (size_t unit = 0; in.progress && unit < done.size(); ++unit) {
-    if (done[unit] == 1) reportUnit(unit);
-  }
+  uint64_t doneBefore = 0;  // reported at once, as it says nothing of the speed
+  for (size_t unit = 0; unit < done.size(); ++unit)
+    if (done[unit] == 1 && controls.shard.has(unit)) doneBefore += pathsOfUnit(unit);
+  if (in.progress && doneBefore > 0) in.progress(doneBefore);
   forUnitsLeft(
       done, controls,
       [&](size_t unit) {
         for (size_t i = unit * kVplsPerUnit; i < endOf(unit); ++i)
           sums[i] = vplPaths.tracePaths(static_cast<uint32_t>(i), points[i], result.points,
                                         std::span(result.groups).subspan(i * groups, groups));
-        if (in.progress) reportUnit(unit);
+        if (in.progress) in.progress(pathsOfUnit(unit));
       },
       [&] { return encode(done, result); });
   for (size_t unit = 0; controls.sink && unit < done.size(); ++unit) {

@@ -179,6 +179,7 @@ std::optional<PassBudget> budgetOf(const Values& options) {
   if (time) budget.timeS = options[kTimeOption];
   if (options.has(kTargetErrorOption)) budget.error = options[kTargetErrorOption];
   budget.spp = options[kSppOption];
+  if (budget.spp == static_cast<uint64_t>(kUnlimitedSpp)) budget.spp = UINT64_MAX;
   const uint64_t passSpp = passSppOf(options);
   if (budget.spp < kMinPasses * passSpp) {
     throw UsageError("--spp: with --time, --target-error or --passes it is at least " +

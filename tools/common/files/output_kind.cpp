@@ -54,7 +54,8 @@ bool isVplOf(std::string_view bytes, VplStage stage) {
 
 // Attributes are sorted by their names, and ours are the first.
 bool isExr(std::string_view bytes) {
-  return bytes.starts_with("\x76\x2f\x31\x01"sv) && bytes.substr(8).starts_with("bnvpl."sv);
+  return bytes.size() > 8 && bytes.starts_with("\x76\x2f\x31\x01"sv) &&
+         bytes.substr(8).starts_with("bnvpl."sv);
 }
 
 // A PNG whose chunks before the pixels name this program, or one of version 0.2 as stb_image_write

@@ -303,8 +303,10 @@ Summary::Cost Summary::close(const ToolOptions& options, OutputSet& files) const
   return cost;
 }
 
-void Summary::finish(const ToolOptions& options, OutputSet& files) const {
+void Summary::finish(const ToolOptions& options, OutputSet& files,
+                     const std::function<void()>& committed) const {
   const Cost cost = close(options, files);
+  if (committed) committed();
   if (options.quiet) return;
   std::string text;
   for (const std::string& line : lines_) text += tool_ + ": " + escapedLine(line) + "\n";

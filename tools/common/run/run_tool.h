@@ -102,7 +102,9 @@ class Summary {
   // Adds "non_finite_samples", the number of samples that became NaN or infinite and count as zero,
   // and prints one warning if there are any. `what` names them in the plural.
   void addNonFinite(uint64_t count, const std::string& what);
-  void finish(const ToolOptions& options, OutputSet& files) const;
+  // Puts the outputs in place, calls `committed`, and prints the summary.
+  void finish(const ToolOptions& options, OutputSet& files,
+              const std::function<void()>& committed = {}) const;
   // The same without lines for people, for commands that print their answer to stdout.
   void save(const ToolOptions& options, OutputSet& files) const { close(options, files); }
 

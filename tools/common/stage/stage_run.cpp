@@ -55,8 +55,8 @@ int StageRun::execute(const StageWork& work) {
     }
   }
   addDepfile(files, tool_.depfile, request_.output, work.read);
-  summary_.finish(tool_, files);
-  checkpoint.remove();
+  // The checkpoint goes before anything is printed, which a closed pipe may end.
+  summary_.finish(tool_, files, [&] { checkpoint.remove(); });
   return kExitOk;
 }
 

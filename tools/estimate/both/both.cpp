@@ -90,11 +90,12 @@ class Estimator {
 
  private:
   // Runs work(progress), which does `units` units that count as `photons` photons in the overall
-  // progress.
+  // progress. Every shard repeats the pilots, and counts them in proportion to its share.
   template <typename Work>
-  auto withProgress(uint64_t photons, uint64_t units, const Work& work) {
+  auto withProgress(size_t phase, uint64_t photons, uint64_t units, const Work& work) {
     photons = std::min(photons, work_ - reported_);
     reported_ += photons;
+    if (phase < kPhotonPhase) photons = in_.controls.shard.shareOf(photons);
     std::atomic<uint64_t> done{0};
     const auto photonsOf = [&](uint64_t n) {
       return static_cast<uint64_t>(static_cast<double>(photons) * static_cast<double>(n) /
@@ -131,10 +132,11 @@ class Estimator {
     work.sums = phases_.run(
         phase, trialScale,
         [&](const WorkControls& controls) {
-          return withProgress(equivalent, work.perLight.total(), [&](const ProgressFn& progress) {
-            return tracePhotons({in_.vpls, in_.accel, in_.lights, progress, controls}, run,
-                                depositToOneInSight);
-          });
+          return withProgress(
+              phase, equivalent, work.perLight.total(), [&](const ProgressFn& progress) {
+                return tracePhotons({in_.vpls, in_.accel, in_.lights, progress, controls}, run,
+                                    depositToOneInSight);
+              });
         },
         [&](const PhotonSums& sums) { return finishedState(sums, work.perLight.total()); });
     return work;
@@ -152,7 +154,7 @@ class Estimator {
         [&](const WorkControls& controls) {
           uint64_t all = 0;
           for (const uint64_t n : points) all += vplPaths.pathsOf(n);
-          return withProgress(equivalent, all, [&](const ProgressFn& progress) {
+          return withProgress(phase, equivalent, all, [&](const ProgressFn& progress) {
             return tracePathsOfAll({in_.vpls, in_.accel, in_.lights, progress, controls}, vplPaths,
                                    points);
           });

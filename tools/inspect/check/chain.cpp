@@ -39,7 +39,9 @@ std::string mending(const Links& links, size_t first, const SceneWords& words) {
     // The stages that always read the scene take it first; vpl-eliminate takes --scene.
     const bool leads = record.tool != "vpl-eliminate";
     std::vector<std::string> scene = words.scene;
-    if (!record.views.empty()) scene.insert(scene.end(), words.view.begin(), words.view.end());
+    if (record.views.size() == 1) scene.insert(scene.end(), words.view.begin(), words.view.end());
+    for (size_t v = 1; record.views.size() > 1 && v <= record.views.size(); ++v)
+      scene.insert(scene.end(), {"--view", "VIEW-" + std::to_string(v) + ".toml"});
     if (readsScene(record) && leads) inputs = scene;
     if (i > 0) inputs.push_back(links[i - 1]->file.string());
     if (readsScene(record) && !leads) {
@@ -132,9 +134,10 @@ std::string brokenRows(const CheckedFile& earlier, const CheckedFile& later) {
     }
     if (same && reweighted) same = isScaled(from, source, to, row);
     if (same && !kept) {
+      constexpr double kRounding = 1.0 + 1e-5;  // reaches are compared as squares of floats
       for (size_t k = row * to.emitPoints; k < (row + 1) * to.emitPoints; ++k)
         same = same && double{length(to.emitPosition[k] - to.position[row])} <=
-                           to.reachFactor * double{to.radius[row]};
+                           kRounding * to.reachFactor * double{to.radius[row]};
     }
     if (!same)
       return "row " + std::to_string(row) + " (id " + std::to_string(to.id[row]) +
@@ -147,11 +150,12 @@ std::string brokenRows(const CheckedFile& earlier, const CheckedFile& later) {
 
 std::string commandOf(const StageRecord& record, const std::vector<std::string>& inputs,
                       const fs::path& output) {
-  std::string command = record.tool;
+  // A stranger's file may hold anything, and the command is there to be pasted into a shell.
+  std::string command = shellWord(record.tool);
   for (const std::string& input : inputs) command += " " + shellWord(input);
   command += " -o " + shellWord(output.string());
   for (const auto& [name, value] : record.options.items()) {
-    command += " --" + name + " " + optionText(value);
+    command += " " + shellWord("--" + name) + " " + optionText(value);
   }
   if (!record.processor.empty()) command += " --processor " + shellWord(record.processor);
   return command;

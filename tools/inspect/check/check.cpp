@@ -7,6 +7,7 @@
 #include "formats/image/exr_io.h"
 #include "formats/vpl/vpl_io.h"
 #include "scene/scene_hash.h"
+#include "tools/common/files/shell_text.h"
 #include "tools/inspect/file_kind.h"
 
 namespace bnvpl {
@@ -91,12 +92,9 @@ std::string renderOptions(const Image& image) {
   for (const ImageChannel& channel : image.channels) {
     if (const std::string layer = layerOf(channel.name); !layer.empty()) layers.insert(layer);
   }
-  std::string separator = " --layers ";
-  for (const std::string& layer : layers) {
-    options += separator + layer;
-    separator = ",";
-  }
-  return options;
+  std::string list;
+  for (const std::string& layer : layers) list += (list.empty() ? "" : ",") + layer;
+  return list.empty() ? options : options + " --layers " + shellWord(list);
 }
 
 CheckedFile checkExr(const fs::path& file) {

@@ -96,7 +96,13 @@ void warnOfOtherScenes(const CompareRequest& command, const Sides& s) {
   }
 }
 
-// Crops count where all images have pixels; elsewhere they are black without being so.
+void blacken(Image& image, size_t pixel) {
+  for (ImageChannel& channel : image.channels)
+    if (pixel < channel.data.size()) channel.data[pixel] = 0.0f;
+}
+
+// Crops count where all images have pixels. Elsewhere all are made black, as FLIP looks at what
+// surrounds a pixel.
 void leaveOutWhatCropsLack(const CompareRequest& command, Sides& s) {
   const PixelBox all{0, 0, s.imageB.width, s.imageB.height};
   PixelBox box = all;
@@ -111,7 +117,9 @@ void leaveOutWhatCropsLack(const CompareRequest& command, Sides& s) {
   for (size_t i = 0; i < weights.size(); ++i) {
     const auto x = static_cast<int>(i % static_cast<size_t>(all.x1)),
                y = static_cast<int>(i / static_cast<size_t>(all.x1));
-    if (x < box.x0 || x >= box.x1 || y < box.y0 || y >= box.y1) weights[i] = 0.0;
+    if (x >= box.x0 && x < box.x1 && y >= box.y0 && y < box.y1) continue;
+    weights[i] = 0.0;
+    for (Image* image : {&s.imageA, &s.imageB, &s.imageSecond, &s.imageMean}) blacken(*image, i);
   }
   if (s.mask.sum(weights.size()) == 0.0)
     throw InputError(command.imageA, "and " + command.imageB.string() +

@@ -24,6 +24,7 @@ int runDoctor(const DoctorRequest& command, const ToolOptions& tool) {
   // The diagnosis contains the warnings.
   const Scene scene = loadSceneFor(command.scene, Warnings::Hold);
   used.ready(scene.files);
+  if (tool.strict) printHeldWarnings();  // throws if there are any
   const Accelerator accel(scene);
   const Json diagnosis = diagnose(accel, LightSet(accel));
   saveStats("doctor", diagnosis, summary, tool);

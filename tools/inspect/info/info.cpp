@@ -129,9 +129,15 @@ Json describeImage(const Image& image) {
     if (name != kProvenanceAttribute) json["attributes"][name] = value;
   }
   json["columns"] = Json::array();
+  const PixelBox window = dataWindowOf(image);
+  if (window != PixelBox{0, 0, image.width, image.height})
+    json["data_window"] = {window.x0, window.y0, window.x1, window.y1};
   for (const ImageChannel& channel : image.channels) {
     Range range;
-    for (const float value : channel.data) range.add(double{value});
+    for (int y = window.y0; y < window.y1; ++y) {
+      for (int x = window.x0; x < window.x1; ++x)
+        range.add(double{channel.data[size_t(y) * size_t(image.width) + size_t(x)]});
+    }
     Json entry = rangeJson(channel.name, range);
     entry["not_finite"] = range.other;
     json["columns"].push_back(std::move(entry));

@@ -26,6 +26,11 @@ void appendHead(std::string& text, const Json& d) {
   if (d["format"] == "exr") {
     append(text, "%s: OpenEXR, %s x %s pixels, %s bytes\n", word(d, "file").c_str(),
            word(d, "width").c_str(), word(d, "height").c_str(), word(d, "bytes").c_str());
+    if (d.contains("data_window")) {
+      const Json& w = d["data_window"];
+      append(text, "  a crop: columns %d to %d, rows %d to %d; the figures are of these pixels\n",
+             w[0].get<int>(), w[2].get<int>() - 1, w[1].get<int>(), w[3].get<int>() - 1);
+    }
     for (const auto& [name, value] : d["attributes"].items()) {
       text += "  " + name + " = " + value.get<std::string>() + "\n";
     }

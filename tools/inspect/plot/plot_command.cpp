@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "core/memory.h"
 #include "formats/image/png_io.h"
 #include "tools/common/files/depfile.h"
 #include "tools/common/options/choice.h"
@@ -70,6 +71,9 @@ int runPlot(const PlotRequest& command, const ToolOptions& tool) {
   if (!command.colourGiven && table.stage == VplStage::Lit) options.colour = DotColour::Flux;
 
   requireColours(command.file, table, options.colour);
+  // Radiance and 8 bits of each channel.
+  requireMemory(15.0 * double(scene.film.width) * double(scene.film.height), "the picture",
+                "choose a smaller --size");
   const Accelerator accel(scene);
   if (byContribution) {
     ProgressMeter meter("rows of pixels", contributionFilm(scene.film).height, progressStyle(tool));

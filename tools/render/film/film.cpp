@@ -152,15 +152,19 @@ Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOpt
   };
   const auto state = [&] { return film.encode(); };
   const uint64_t own = controls.shard.shareOf(tiles.pixelsMeeting(film.crop));
-  if (progress) progress(own * samplesBefore(film.at.round));
+  // What a checkpoint holds is reported at once, as it says nothing of the speed.
+  uint64_t doneBefore = own * samplesBefore(film.at.round);
+  for (size_t index = 0; index < film.done.size(); ++index) {
+    if (film.done[index] == 1)
+      doneBefore += uint64_t{tiles.at(index).pixels()} *
+                    (samplesBefore(film.at.round + 1) - samplesBefore(film.at.round));
+  }
+  if (progress && doneBefore > 0) progress(doneBefore);
   for (; film.at.round < rounds; ++film.at.round, film.beginRound()) {
     const uint32_t begin = samplesBefore(film.at.round), end = samplesBefore(film.at.round + 1);
     const auto report = [&](const Tile& tile) {
       if (progress) progress(uint64_t{tile.pixels()} * (end - begin));
     };
-    for (size_t index = 0; index < film.done.size(); ++index) {
-      if (film.done[index] == 1) report(tiles.at(index));
-    }
     forUnitsLeft(
         film.done, controls,
         [&](size_t index) {
