@@ -101,7 +101,7 @@ TEST_F(CompareCli, OptionsThatMakeNoSenseExitWith2) {
   EXPECT_FALSE(fs::exists(at("d.png")));
 }
 
-// As layers of positions and normals have.
+// Layers of positions and normals have such means.
 TEST_F(CompareCli, AnErrorOverANegativeMeanIsPositive) {
   Image minus = readExr(at("b.exr"));
   for (const float value : {-1.0f, -2.0f}) {
