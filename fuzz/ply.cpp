@@ -30,13 +30,13 @@ void requireSane(const MeshData& mesh) {
   require(mesh.positions.size() == 3 * n, "each vertex has three coordinates");
   require(mesh.normals.empty() || mesh.normals.size() == 3 * n,
           "all vertices have normals or none");
-  require(mesh.uvs.empty() || mesh.uvs.size() == 2 * n, "all vertices have uv or none");
+  require(mesh.uvs.size() == 2 * n || mesh.uvs.size() == 8, "vertices have uv, or faces four");
   require(mesh.pieces <= mesh.triangles.size(), "each face has a triangle");
   for (const Triangle& t : mesh.triangles) {
     for (size_t k = 0; k < 3; ++k) {
       require(t.position[k] < n, "corners are vertices");
       require(t.normal[k] == kNone || !mesh.normals.empty(), "corners' normals are there");
-      require(t.uv[k] == kNone || !mesh.uvs.empty(), "corners' uv are there");
+      require(t.uv[k] == kNone || 2 * size_t{t.uv[k]} < mesh.uvs.size(), "corners' uv are there");
     }
   }
 }

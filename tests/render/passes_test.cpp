@@ -284,7 +284,7 @@ TEST(Passes, EndByTimeErrorOrNumber) {
 TEST(Passes, SppLimitsTheirNumber) {
   EXPECT_FALSE(budgetOf(resolveRender({})).has_value());
   EXPECT_EQ(resolveRender({})[kSppOption], 16u);
-  EXPECT_EQ(budgetOf(resolveRender({{"time", "1m"}}))->spp, 0xffffffffu);
+  EXPECT_EQ(budgetOf(resolveRender({{"time", "1m"}}))->spp, UINT64_MAX);
   EXPECT_EQ(budgetOf(resolveRender({{"passes", "2"}, {"pass-spp", "64"}}))->passSpp, 64u);
   EXPECT_EQ(budgetOf(resolveRender({{"time", "1m"}, {"spp", "33"}}))->spp, 33u);
   EXPECT_EQ(budgetOf(resolveRender({{"spp", "33"}, {"passes", "3"}}))->passes, 3u);

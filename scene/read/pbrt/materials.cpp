@@ -206,7 +206,11 @@ void Materials::Maker::ignoreMedium(const Entity& e) {
 uint32_t Materials::Maker::componentOf(const std::string& name, const Place& place) {
   const auto known = components_.find(name);
   if (known != components_.end()) return known->second;
-  const std::optional<Material>& m = base({name, kNone, place});
+  std::optional<Material> m = base({name, kNone, place});
+  if (m && !m->relief.flat()) {
+    r_.notes.add(place, "a mix has no relief: that of '" + name + "' is left out");
+    m->relief = {};
+  }
   return components_[name] = m ? builder_.addMaterial(*m) : kNone;
 }
 

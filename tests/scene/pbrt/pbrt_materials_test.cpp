@@ -94,6 +94,12 @@ TEST_F(PbrtMaterials, MixesAndWhatIsNotRead) {
   EXPECT_EQ(mix.amount.value, 0.3f);
   EXPECT_TRUE(std::holds_alternative<DiffuseModel>(s.materials.at(mix.first).model));
   EXPECT_TRUE(std::holds_alternative<ConductorModel>(s.materials.at(mix.second).model));
+  write("n.tga", tga(1, 1, {{128, 128, 255, 255}}));
+  const Scene bumpy = loadWorld(
+      "MakeNamedMaterial \"a\" \"string type\" \"diffuse\" \"string normalmap\" \"n.tga\"\n"
+      "Material \"mix\" \"string materials\" [\"a\" \"a\"]\n");
+  EXPECT_EQ(countContaining(bumpy.warnings, "a mix has no relief: that of 'a' is left out"), 1u)
+      << joined(bumpy.warnings);
   EXPECT_NE(
       pbrtError("WorldBegin MakeNamedMaterial \"m\" \"string type\" \"mix\" \"string materials\" "
                 "[\"m\" \"m\"] NamedMaterial \"m\"\n" +

@@ -90,7 +90,7 @@ class Estimator {
 
  private:
   // Runs work(progress), which does `units` units that count as `photons` photons in the overall
-  // progress. Every shard repeats the pilots, and counts them in proportion to its share.
+  // progress; pilots, which every shard repeats, by its share.
   template <typename Work>
   auto withProgress(size_t phase, uint64_t photons, uint64_t units, const Work& work) {
     photons = std::min(photons, work_ - reported_);
@@ -113,8 +113,7 @@ class Estimator {
     return result;
   }
 
-  // Pilots need no emission points.
-  size_t emitPointsOf(size_t phase) const {
+  size_t emitPointsOf(size_t phase) const {  // pilots need none
     return phase < kPhotonPhase ? 0 : options_[kEmitPointsOption];
   }
 

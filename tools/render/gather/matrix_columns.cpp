@@ -156,9 +156,15 @@ std::vector<Cluster> clustersOfSeenAndUnseen(const Columns& columns, size_t coun
 }
 
 std::vector<double> sharesOf(const VplLights& vpls, const Columns& columns) {
+  constexpr double kFluxShare = 0.2;
   std::vector<double> shares(columns.size());
+  double norms = 0.0, flux = 0.0;
   for (size_t i = 0; i < shares.size(); ++i)
-    shares[i] = columns.norm(i) > 0.0 ? columns.norm(i) : double{mean(vpls.intensity[i])};
+    norms += columns.norm(i), flux += double{mean(vpls.intensity[i])};
+  for (size_t i = 0; i < shares.size(); ++i) {
+    shares[i] = kFluxShare * double{mean(vpls.intensity[i])} / flux;
+    if (norms > 0.0) shares[i] += (1.0 - kFluxShare) * columns.norm(i) / norms;
+  }
   return shares;
 }
 

@@ -109,16 +109,15 @@ std::vector<Cluster> clustersBySampling(const Cluster& vpls, const Columns& colu
 // of many images would lack their light. There are VPLs.
 std::vector<Cluster> clustersOfSeenAndUnseen(const Columns& columns, size_t count, Rng& rng);
 
-// With what share a VPL is drawn for its cluster: by its light in the rows, or by its flux where no
-// row sees it.
+// With what share a VPL is drawn for its cluster: by its light in the rows and, to a fifth, by its
+// flux. That bounds the weight of VPLs that the rows hardly see and other points see well.
 std::vector<double> sharesOf(const VplLights& vpls, const Columns& columns);
 
 // Splits the cluster of largest cost, the largest of those that cost alike, until there are
-// `count`. split(cluster) returns one part and leaves the other. `free`: also splits clusters of no
-// cost.
+// `count`. split(cluster) returns one part and leaves the other.
 template <typename Split>
 std::vector<Cluster> refinedClusters(std::vector<Cluster> clusters, size_t count,
-                                     const Columns& columns, bool free, const Split& split) {
+                                     const Columns& columns, const Split& split) {
   std::multimap<std::pair<double, size_t>, Cluster> byCost;
   const auto add = [&](Cluster c) {
     const double cost = c.size() < 2 ? 0.0 : bundleOf(c, columns).cost();
@@ -126,8 +125,7 @@ std::vector<Cluster> refinedClusters(std::vector<Cluster> clusters, size_t count
   };
   for (Cluster& c : clusters) add(std::move(c));
   while (!byCost.empty() && byCost.size() < count) {
-    const auto& [cost, size] = byCost.rbegin()->first;
-    if (size < 2 || (cost == 0.0 && !free)) break;
+    if (byCost.rbegin()->first.second < 2) break;
     Cluster cluster = byCost.extract(std::prev(byCost.end())).mapped();
     add(split(cluster));
     add(std::move(cluster));

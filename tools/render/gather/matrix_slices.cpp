@@ -160,8 +160,6 @@ SlicePlan makeSlicePlan(const GatherInputs& in, const Values& options) {
   const std::vector<Cluster> common = clustersOfSeenAndUnseen(
       columns, static_cast<size_t>(std::ceil(kCommonShare * double(count))), rng);
   const std::vector<double> byAllRows = sharesOf(in.vpls, columns);
-  // Whether VPLs whose columns have one direction are split, too.
-  const bool splitsAll = count >= columns.size() || rows.empty();
   plan.draws.resize(plan.slices.size());
   const size_t neighbours = std::min<size_t>(options[kNeighbourSlicesOption], columns.rows());
   const auto threads =
@@ -173,8 +171,8 @@ SlicePlan makeSlicePlan(const GatherInputs& in, const Values& options) {
   parallelFor(plan.slices.size(), 1, [&](size_t s) {
     Rng own(key, s + 1);
     const Columns local = rowsAbout(plan.slices[s], plan.slices, neighbours, columns);
-    const std::vector<Cluster> clusters = refinedClusters(
-        common, count, local, splitsAll, [&](Cluster& c) { return splitOff(c, local); });
+    const std::vector<Cluster> clusters =
+        refinedClusters(common, count, local, [&](Cluster& c) { return splitOff(c, local); });
     std::vector<double> shares(columns.size());
     for (const Cluster& cluster : clusters) {
       setShares(cluster, local, byAllRows, shares);

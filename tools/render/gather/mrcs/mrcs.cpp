@@ -83,7 +83,7 @@ Cluster splitOff(Cluster& cluster, const Columns& columns, Rng& rng) {
 
 std::vector<Cluster> clustersOf(const Columns& columns, size_t count, Rng& rng, size_t& splits) {
   const auto bySampling = static_cast<size_t>(std::ceil(kSampledShare * double(count)));
-  return refinedClusters(clustersOfSeenAndUnseen(columns, bySampling, rng), count, columns, true,
+  return refinedClusters(clustersOfSeenAndUnseen(columns, bySampling, rng), count, columns,
                          [&](Cluster& c) {
                            ++splits;
                            return splitOff(c, columns, rng);
