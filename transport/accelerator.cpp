@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cstdlib>
 #include <cstring>
 #include <limits>
 #include <new>
@@ -136,7 +137,9 @@ struct Accelerator::Impl {
 Accelerator::Accelerator(const Scene& scene, Processor processor)
     : scene_(scene), impl_(std::make_unique<Impl>()) {
   impl_->exact = processor == Processor::Any;
-  impl_->device = rtcNewDevice(impl_->exact ? "isa=sse2,ignore_config_files=1" : nullptr);
+  // Embree's hits differ with the processor's instruction set. The docs' examples choose one.
+  impl_->device = rtcNewDevice(impl_->exact ? "isa=sse2,ignore_config_files=1"
+                                            : std::getenv("BNVPL_EMBREE_CONFIG"));
   if (!impl_->device) {
     if (rtcGetDeviceError(nullptr) == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
     throw std::runtime_error("Embree cannot start on this machine");

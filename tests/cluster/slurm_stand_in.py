@@ -49,9 +49,10 @@ print(number)
 SQUEUE = (
     "import os, pathlib\nprint((pathlib.Path(os.environ['FAKE_SLURM']) / 'queued').read_text())\n"
 )
-# This scontrol logs a requeue and fails, so that the task ends.
+# This scontrol logs a requeue and fails, so that the task ends. It knows no limit of arrays.
 SCONTROL = """\
 import os, pathlib, sys
+if sys.argv[1] != "requeue": sys.exit(1)
 with open(pathlib.Path(os.environ["FAKE_SLURM"]) / "requeued", "a") as log: \
 print(*sys.argv[1:], file=log)
 sys.exit(1)
