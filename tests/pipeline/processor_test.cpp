@@ -105,5 +105,17 @@ TEST_F(ProcessorRun, PipelinesHandItToAllStages) {
   EXPECT_EQ(count, 7u) << graph;  // two shards of three stages, and eliminate
 }
 
+TEST_F(ProcessorRun, TheEnvironmentConfiguresEmbree) {
+  const std::string place =
+      "'" BNVPL_BIN "/vpl-place' " + scene_ + " -n 100 --quiet -o " + path("c.vpl");
+  const auto says = [&](const std::string& more) {
+    const Outcome r = shell("env BNVPL_EMBREE_CONFIG=verbose=2 " + place + more);
+    EXPECT_EQ(r.code, 0) << r.err;
+    return contains(r.out + r.err, "Embree");
+  };
+  EXPECT_TRUE(says(""));
+  EXPECT_FALSE(says(" --processor any")) << "which configures it itself";
+}
+
 }  // namespace
 }  // namespace bnvpl
