@@ -42,11 +42,15 @@ def width_of(row: Row) -> int:
     return int(str(row["film"]).split("x")[0])
 
 
+def rounded(entry: Any) -> Any:
+    return float(f"{entry:.6g}") if isinstance(entry, float) else entry
+
+
 def kept(found: dict[str, Any]) -> list[Row]:
     """The rows of a results.json as docs/field.csv has them."""
     made = {"tools": found["provenance"]["commit"], "date": found["provenance"]["date"]}
     rows = [r for r in found["results"] if r["part"] == "field"]
-    return [{key: r.get(key, "") for key in COLUMNS} | made for r in rows]
+    return [{key: rounded(r.get(key, "")) for key in COLUMNS} | made for r in rows]
 
 
 def read() -> list[Row]:
