@@ -170,7 +170,10 @@ def main() -> None:
     )
     parser.add_argument("folder", type=Path, help="of results.json")
     arguments = parser.parse_args()
-    found = json.loads((arguments.folder / "results.json").read_text())
+    results = arguments.folder / "results.json"
+    if not results.is_file():
+        raise SystemExit(f"field_page: {results}: no such file; run 'make -C eval field' first")
+    found = json.loads(results.read_text())
     folders = (settings.ROOT / "tools/render/gather").glob("*/theory.md")
     gathers = [theory.parent.name.replace("_", "-") for theory in folders]
     rows = merged(read(), kept(found))
