@@ -20,13 +20,13 @@ from pathlib import Path
 from typing import Any
 
 from bnvpl_eval import output, settings
+from bnvpl_eval.field_methods import PAGES
+from bnvpl_eval.parts.field import DEFAULT
 from rooms_page import put
 
 PAGE = settings.ROOT / "docs/field.md"
 COMPENSATIONS = ("none", "near-field")  # the second is the default of vpl-render
-DEFAULT = "tilecuts"  # its gather
 Row = dict[str, Any]
-
 
 # What docs/field.csv keeps of a row.
 COLUMNS = (
@@ -174,7 +174,7 @@ def main() -> None:
     if not results.is_file():
         raise SystemExit(f"field_page: {results}: no such file; run 'make -C eval field' first")
     found = json.loads(results.read_text())
-    folders = (settings.ROOT / "tools/render/gather").glob("*/theory.md")
+    folders = PAGES["gathers"].glob("*/theory.md")
     gathers = [theory.parent.name.replace("_", "-") for theory in folders]
     rows = merged(read(), kept(found))
     output.write_csv(ROWS, rows)

@@ -7,7 +7,7 @@ MAX_SPP = 1024
 MIN_SAMPLE_S = 6e-5  # CPU time for one sample a pixel; less is the noise of two times
 CLOSE_ENOUGH = 0.1  # to the time, for a number of samples that has been run
 SECOND_TRIAL = 0.25  # as a share of the time
-TOO_LONG = 1.25  # times the time, for a run of fewer samples than a first trial has
+TOO_LONG = 1.25  # times the time, for a run of no more samples than a first trial has
 MAX_TRIALS = 4
 
 
