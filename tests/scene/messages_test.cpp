@@ -111,7 +111,8 @@ TEST_F(Messages, AnEmptyListOfInstancesIsNamed) {
     write("inner.toml", mesh_);
     const Scene s = load(base_ + "[[mesh]]\nfile = \"" + file + "\"\ninstance = []\n");
     EXPECT_EQ(s.triangles.size(), 2u) << file;
-    expectWarning(s, "scene.toml:12: [[mesh]]: is an empty list, so that the mesh stands nowhere");
+    expectWarning(
+        s, "scene.toml:12: [[mesh]]: 'instance' is an empty list, so that the mesh stands nowhere");
   }
 }
 

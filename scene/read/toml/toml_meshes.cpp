@@ -91,7 +91,8 @@ void readMesh(const fs::path& file, const toml::table& table, const FileNames& n
   std::vector<SceneBuilder::Place> instances;
   if (several) instances = readInstances(file, table, builder);
   if (several && instances.empty())
-    return builder.warn(s.where("instance") + "is an empty list, so that the mesh stands nowhere");
+    return builder.warn(s.where("instance") +
+                        "'instance' is an empty list, so that the mesh stands nowhere");
   const bool readable = std::ranges::count(kOtherFormats, lowerExtension(path)) == 0;
   const bool whole = isSceneFile(path) && lowerExtension(path) != ".obj";
   if (readable) require("file", path, whole ? "file" : "OBJ file");
