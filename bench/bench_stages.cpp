@@ -9,7 +9,7 @@
 #include "tests/support/pipeline.h"
 #include "tools/render/gather/gather.h"
 #include "transport/camera.h"
-#include "transport/photon_walk.h"
+#include "transport/photons/photon_walk.h"
 
 namespace bnvpl::test {
 namespace {

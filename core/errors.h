@@ -1,5 +1,5 @@
 // Exceptions report errors of input and I/O; bugs are asserted. A tool turns an exception into one
-// line and an exit code (tools/common/run/exit_codes.h).
+// line and an exit code (tools/common/process/exit_codes.h).
 #pragma once
 
 #include <cstdint>

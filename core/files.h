@@ -22,11 +22,14 @@ inline std::filesystem::path realPath(const std::filesystem::path& file) {
   return failed ? file.lexically_normal() : real;
 }
 
+inline std::string lowered(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
 // The extension in lower case, such as ".ply"; empty if there is none.
 inline std::string lowerExtension(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension;
+  return lowered(file.extension().string());
 }
 
 }  // namespace bnvpl

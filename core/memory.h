@@ -17,8 +17,9 @@ uint64_t availableMemory();
 uint64_t residentMemory();
 uint64_t peakMemory();
 
-// What control groups leave, of which the files of processes can be taken back. `root`: their
-// hierarchy, /sys/fs/cgroup. `groups`: the groups of a process, as /proc/self/cgroup names them.
+// Bytes left under the limits of a process's control groups; the page cache counts as free. `root`:
+// their hierarchy, /sys/fs/cgroup. `groups`: the groups of a process, as /proc/self/cgroup names
+// them.
 uint64_t groupsLeave(const fs::path& root, const fs::path& groups);
 
 // Throws MemoryError "WHAT needs about 60 GiB of memory, 21 GiB are available; CURE" if `bytes`

@@ -102,6 +102,8 @@ class Rng {
     rng.key_ = key, rng.index_ = index, rng.pointsLeft_ = kStratifiedPoints;
     return rng;
   }
+  // Numbers independent of those that are still to come. Forks at the same place are equal.
+  constexpr Rng fork() const { return {state_, dimension_}; }
   constexpr float next() { return pointsLeft_ > 0 ? nextOfSequence().x : nextAlone(); }
   constexpr Point2 nextPoint() {
     if (pointsLeft_ > 0) return nextOfSequence();

@@ -32,7 +32,11 @@ enum class RandomStream : uint32_t {
   PilotPaths,
   GridMembers = 40,  // gather grid-hierarchy
   Octree,            // gather paquette
-  Contributions      // vpl-inspect contributions
+  Contributions,     // vpl-inspect contributions
+  MatrixSlices,      // gathers lightslice and matrix-completion
+  Mrcs,              // gather mrcs
+  LightCells,        // gather lie
+  CameraPoints       // vpl-eliminate --method rejection
 };
 
 constexpr uint64_t streamKey(uint64_t seed, RandomStream stream) {

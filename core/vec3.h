@@ -90,6 +90,19 @@ struct Bounds {
   Vec3 extent() const { return empty() ? Vec3{} : upper - lower; }
   Vec3 center() const { return 0.5f * (lower + upper); }
   float diagonal() const { return length(extent()); }
+  // Whether the ray meets the box, which contains its faces.
+  bool isHitBy(Vec3 from, Vec3 direction) const {
+    float begin = 0.0f, end = INFINITY;
+    for (size_t c = 0; c < 3; ++c) {
+      if (direction[c] == 0.0f) {
+        if (!(from[c] >= lower[c] && from[c] <= upper[c])) return false;
+        continue;
+      }
+      const float a = (lower[c] - from[c]) / direction[c], b = (upper[c] - from[c]) / direction[c];
+      begin = std::max(begin, std::min(a, b)), end = std::min(end, std::max(a, b));
+    }
+    return begin <= end;
+  }
   float distanceSquared(Vec3 p) const {
     return lengthSquared(max(max(lower - p, p - upper), Vec3{}));
   }

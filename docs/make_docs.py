@@ -329,7 +329,8 @@ def main() -> int:
                 nonlocal sessions
                 if not match["on"]:
                     sessions += 1
-                here = Path(folder) / f"{file.stem}-{sessions}"
+                page = "-".join(file.relative_to(ROOT).with_suffix("").parts)
+                here = Path(folder) / f"{page}-{sessions}"
                 now = bench.session(match["text"], here if here.exists() else bench.copy(here))
                 if same(now, match["text"]):
                     return match[0]

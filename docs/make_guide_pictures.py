@@ -182,7 +182,9 @@ def write(name: str, panels: Sequence[npt.NDArray[Any]]) -> None:
         OpenImageIO.ImageSpec(whole.shape[1], whole.shape[0], 3, OpenImageIO.UINT8)
     )
     out.set_pixels(OpenImageIO.ROI(), whole)
-    out.write(str(ROOT / "docs/images" / f"guide-{name}.png"))
+    file = ROOT / "docs/images" / f"guide-{name}.png"
+    if not out.write(str(file)):
+        sys.exit(f"{file}: {out.geterror()}")
     print(f"docs/images/guide-{name}.png", flush=True)
 
 
@@ -212,7 +214,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("names", nargs="*", help=f"some of {', '.join(CASES)}")
+    parser.add_argument("names", nargs="*", metavar="NAME", help=f"some of {', '.join(CASES)}")
     parser.add_argument(
         "--bin", default=ROOT / "build/release/bin", type=Path, help="folder of the executables"
     )
@@ -221,6 +223,8 @@ def main() -> None:
         "--check", action="store_true", help="compare the pictures' right sides with the tools'"
     )
     options = parser.parse_args()
+    if unknown := [name for name in options.names if name not in CASES]:
+        parser.error(f"no picture '{unknown[0]}'; use {', '.join(CASES)}")
     if options.table:
         print("\n".join(table()))
         return

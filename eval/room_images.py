@@ -27,9 +27,8 @@ def options_of(counts: dict[str, Any]) -> tuple[list[Any], list[Any], list[Any],
     )
 
 
-SETTINGS = {
-    name: options_of(counts) for name, counts in stage_options.presets().items() if name != "final"
-}
+PRESETS = {name: options_of(counts) for name, counts in stage_options.presets().items()}
+SETTINGS = {name: PRESETS[name] for name in ("draft", "default")}
 # Names for integrators with options.
 VARIANTS = {
     "unlit-path": ["path", "--light-sampling", "off"],
@@ -82,26 +81,20 @@ class Rooms:
         shown = self.render(scene, SETTINGS[setting][3], lit)
         return shown["image.exr"], before_s + shown.cpu_s
 
-    def timed(
-        self, scene: gallery.Scene, setting: str, other: str, seconds: float
-    ) -> tuple[Path, int, float]:
+    def timed(self, scene: gallery.Scene, other: str, seconds: float) -> tuple[Path, int, float]:
         """The image of another integrator, with the samples a pixel that fit in `seconds`.
 
         With these, and the CPU seconds that they took.
         """
-        spp = fitting_spp(
-            lambda spp: self.by_samples(scene, setting, other, spp)[1], 4, seconds, MAX_SPP
-        )
-        image, cpu_s = self.by_samples(scene, setting, other, max(1, spp))
+        spp = fitting_spp(lambda spp: self.by_samples(scene, other, spp)[1], 4, seconds, MAX_SPP)
+        image, cpu_s = self.by_samples(scene, other, max(1, spp))
         return image, max(1, spp), cpu_s
 
-    def by_samples(
-        self, scene: gallery.Scene, setting: str, other: str, spp: int
-    ) -> tuple[Path, float]:
+    def by_samples(self, scene: gallery.Scene, other: str, spp: int) -> tuple[Path, float]:
         """The image of another integrator, and CPU seconds of all its stages."""
         sampled = ["--spp", spp, "--seed", 2, *self.bounces()]
         if other == "guided":
-            lit, before_s = self.lit(scene, SETTINGS[setting])
+            lit, before_s = self.lit(scene, PRESETS["guided"])
             run = self.render(scene, ["--integrator", "guided", *sampled], lit)
             return run["image.exr"], before_s + run.cpu_s
         if other == "cycles":
@@ -214,7 +207,7 @@ class Rooms:
         for name in SETTINGS:
             image, seconds = self.ours(scene, name)
             others = {
-                other: self.timed(scene, name, other, seconds)
+                other: self.timed(scene, other, seconds)
                 for other in ("path", *also)
                 if other != "cycles" or self.cycles_reads(scene)
             }

@@ -142,8 +142,12 @@ void AtomicFile::open() {
       const int error = errno;
       forget(partial_.c_str());
       if (error == EEXIST) continue;  // a process of another machine or container has the name
-      throw OutputError(target_, std::string("cannot write: ") + std::strerror(error) +
-                                     "; choose a folder that exists and is writable");
+      throw OutputError(
+          target_,
+          std::string("cannot write: ") + std::strerror(error) +
+              (error == ENAMETOOLONG ? "; choose a shorter name: it is extended until the file "
+                                       "is complete"
+                                     : "; choose a folder that exists and is writable"));
     }
     while (::flock(descriptor_, LOCK_EX) != 0 && errno == EINTR) {
     }

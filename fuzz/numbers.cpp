@@ -8,8 +8,8 @@
 #include "fuzz/fuzz.h"
 #include "tools/common/options/exposure.h"
 #include "tools/common/options/film_size.h"
+#include "tools/common/options/stage_cli.h"
 #include "tools/common/run/run_tool.h"
-#include "tools/common/stage/stage_cli.h"
 
 namespace bnvpl {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "fuzz/fuzz.h"
-#include "scene/material_inputs.h"
 #include "scene/scene.h"
+#include "scene/visit_material.h"
 
 namespace bnvpl {
 

@@ -8,7 +8,7 @@
 #include "core/hash.h"
 #include "formats/vpl/vpl_layout.h"
 #include "fuzz/fuzz.h"
-#include "tools/common/stage/build_id.h"
+#include "tools/common/run/build_id.h"
 #include "tools/merge/shard_set.h"
 
 namespace bnvpl {

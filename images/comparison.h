@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "images/hdr_flip.h"
+#include "images/flip/hdr_flip.h"
 #include "images/image_pair.h"
 #include "images/measures.h"
 

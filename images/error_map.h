@@ -1,7 +1,7 @@
 // False-colour pictures of the error of each pixel by one measure.
 #pragma once
 
-#include "images/hdr_flip.h"
+#include "images/flip/hdr_flip.h"
 #include "images/mask.h"
 #include "images/picture.h"
 

@@ -20,12 +20,14 @@ Pixels readPng(const fs::path& file) {
 
 // The grey of a pixel with 1 to 4 channels: grey, grey alpha, R G B, R G B alpha.
 double weightOf(const fs::path& file, const uint8_t* pixel, uint32_t channels, size_t x, size_t y) {
-  const std::string where = "pixel (" + std::to_string(x) + ", " + std::to_string(y) + ") is ";
+  const auto where = [&] {
+    return "pixel (" + std::to_string(x) + ", " + std::to_string(y) + ") is ";
+  };
   if (channels >= 3 && (pixel[0] != pixel[1] || pixel[0] != pixel[2])) {
-    throw InputError(file, where + "coloured; a mask is white, black or grey");
+    throw InputError(file, where() + "coloured; a mask is white, black or grey");
   }
   if (channels % 2 == 0 && pixel[channels - 1] != 255) {
-    throw InputError(file, where + "transparent; paint what does not count black");
+    throw InputError(file, where() + "transparent; paint what does not count black");
   }
   return pixel[0] / 255.0;
 }

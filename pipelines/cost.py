@@ -52,11 +52,15 @@ def depth(n: float) -> float:
     return math.log2(max(2, n))
 
 
+# The constants of stepsFor().
+MAX_PER_VPL, STEP_FACTOR, MAX_WORK = 24, 10, 2**18
+
+
 def pairs(c: Counts) -> float:
     """Pairs of competing candidates, over the steps of stepsFor() (tools/eliminate/elimination)."""
     steps = [max(1.0, c.vpls)]
-    while (each := c.candidates / steps[-1]) > 60 and each * c.candidates > 2**22:
-        steps.append(30 * steps[-1])
+    while (each := c.candidates / steps[-1]) > MAX_PER_VPL and each * c.candidates > MAX_WORK:
+        steps.append(STEP_FACTOR * steps[-1])
     left = [c.candidates, *reversed(steps[1:])]
     return sum(before**2 / kept for before, kept in zip(left, reversed(steps), strict=True))
 

@@ -1,5 +1,5 @@
-# The presets draft, default and final: counts of all stages, and options of two. Makefile includes
-# this file, and generate_ninja.py reads it. docs/guide.md, "Presets", lists their errors.
+# The presets draft, default, final and guided: counts of all stages, and options of two. Makefile
+# includes this file, and generate_ninja.py reads it. docs/guide.md, "Presets", lists their errors.
 #   VARIABLE.quality := value
 
 CANDIDATES.draft := 15k
@@ -23,3 +23,11 @@ PHOTONS.final    := 20M
 SPP.final        := 256
 ESTIMATE.final   := --irradiance-error 0.002
 RENDER.final     := --near-field-rays 4 --error 0.05
+
+# Path guiding: its VPLs only say where light comes from, so a draft of them is enough.
+CANDIDATES.guided := 15k
+VPLS.guided       := 1500
+PHOTONS.guided    := 1M
+SPP.guided        := 32
+ESTIMATE.guided   := --irradiance-error 0.02
+RENDER.guided     := --integrator guided

@@ -198,16 +198,19 @@ def words_of(text: str, option: str) -> list[str]:
         refuse(f"{option} {text!r}: {problem}; check its quotes")
 
 
+def chooses(words: list[str], method: str) -> bool:
+    """Whether the words of a stage choose a method."""
+    return f"--method={method}" in words or ("--method", method) in zip(words, words[1:])
+
+
 def refuse_lit_placement(options: argparse.Namespace) -> None:
     """Refuses methods that need other files or stages.
 
     VPLs that --method light places carry flux already, and --method rejection reads the scene.
     """
-    words = {"light", "--method=light"} & set(words_of(options.place_flags, "--place-flags")) or {
-        "rejection",
-        "--method=rejection",
-    } & set(words_of(options.eliminate_flags, "--eliminate-flags"))
-    if words:
+    place = words_of(options.place_flags, "--place-flags")
+    eliminate = words_of(options.eliminate_flags, "--eliminate-flags")
+    if chooses(place, "light") or chooses(eliminate, "rejection"):
         refuse(
             "vpl-place --method light and vpl-eliminate --method rejection leave no work to "
             "vpl-estimate; "

@@ -29,7 +29,7 @@ Affine operator*(const Affine& outer, const Affine& inner);
 
 // Largest absolute coordinate of a camera or light. Beyond it, the squared length of a ray
 // overflows a float.
-inline constexpr double kFurthestPlace = 1e18;
+inline constexpr double kMaxCoordinate = 1e18;
 
 // Origin of coordinates in which floats resolve a scene of these bounds. It is 0, the origin of the
 // files, unless the scene lies many times its own size away from there.

@@ -23,10 +23,6 @@ std::vector<size_t> numbersOf(const Scene& scene, const std::string& name) {
 
 }  // namespace
 
-bool isMirrored(const Camera& camera) {
-  return dot(cross(camera.forward, camera.up), camera.right) < 0.0f;
-}
-
 void chooseCamera(const std::string& nameOrIndex, Scene& scene) {
   const std::string asked = "--camera '" + nameOrIndex + "': " + scene.name();
   const std::vector<size_t> named = numbersOf(scene, nameOrIndex);
@@ -52,7 +48,7 @@ void useViewFile(const fs::path& file, Scene& scene) {
   const TomlSection top(file, "view", root, {"film", "camera"});
   const View own = scene.views.empty() ? View{"", scene.camera, scene.film} : scene.views.front();
   for (const char* section : {"film", "camera"}) tableOf(file, root, section);  // both must exist
-  const TomlView view = readTomlView(file, root, isMirrored(own.camera));
+  const TomlView view = readTomlView(file, root, own.camera.isMirrored());
   scene.film = view.film->over(own.film);
   scene.camera = *view.camera;
   scene.camera.position = fromOrigin(view.position, scene.origin);

@@ -9,9 +9,6 @@ namespace bnvpl {
 // UsageError, which lists the cameras, also where several have the name.
 void chooseCamera(const std::string& nameOrIndex, Scene& scene);
 
-// Whether the camera mirrors the image left to right. Cameras of pbrt do: its space is left-handed.
-bool isMirrored(const Camera& camera);
-
 // Takes the view from a TOML file with [film] and [camera], in the coordinates of the scene file.
 // The default of its 'mirrored' and of the film's keys is that of the scene's first camera. Adds
 // the file to Scene::files. Throws InputError.

@@ -4,11 +4,11 @@
 #include <array>
 
 #include "core/files.h"
+#include "scene/builder/scene_builder.h"
 #include "scene/read/gltf/load_gltf.h"
 #include "scene/read/obj/load_obj.h"
 #include "scene/read/pbrt/read_pbrt.h"
 #include "scene/read/toml/scene_toml.h"
-#include "scene/scene_builder.h"
 
 namespace bnvpl {
 
@@ -21,11 +21,6 @@ struct Format {
 constexpr std::array kFormats{Format{".toml", readSceneToml},    Format{".pbrt", readScenePbrt},
                               Format{".pbrt.gz", readScenePbrt}, Format{".gltf", readGltf},
                               Format{".glb", readGltf},          Format{".obj", readSceneObj}};
-
-std::string lowered(std::string name) {
-  for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return name;
-}
 
 // Returns null for other files.
 const Format* formatOf(const fs::path& file) {

@@ -21,7 +21,7 @@
 namespace bnvpl {
 
 // Shading normals from at most one of two maps. They bend scattered light but never decide which
-// side of the surface is seen. Both sides have the same relief (transport/shading_frame.h).
+// side of the surface is seen. Both sides have the same relief (transport/bump_mapping.h).
 struct Relief {
   // Tangent-space normals as colours, linear (TextureUse::srgb false): n = 2 colour - 1, x along
   // increasing u, y along increasing v (v up), z outwards; `strength` scales x and y.

@@ -81,10 +81,10 @@ Matrix3 adaptation(const Xyz& from, const Xyz& to) {
 
 std::optional<Matrix3> rec709From(const Primaries& p) {
   // A primary with y = 0, as a blue may have, has no luminance, but an XYZ: move it a little.
-  constexpr double kLeast = 1e-9;
+  constexpr double kMinY = 1e-9;
   Primaries q = p;
   for (auto* xy : {&q.red, &q.green, &q.blue})
-    if (std::fabs((*xy)[1]) < kLeast) (*xy)[1] = kLeast;
+    if (std::fabs((*xy)[1]) < kMinY) (*xy)[1] = kMinY;
   const Matrix3 toXyz = xyzFromRgb(q);
   const Matrix3 m = product(inverseOf(xyzFromRgb(kRec709)),
                             product(adaptation(xyzOf(q.white), xyzOf(kRec709.white)), toXyz));

@@ -41,6 +41,8 @@ struct Camera {
   float lensRadius = 0.0f;     // 0: a pinhole, which sees everything sharp
   float focusDistance = 1.0f;  // along the viewing axis, of the plane that the lens sees sharp; > 0
   bool hasLens() const { return lensRadius > 0.0f; }
+  // Whether the image is mirrored left to right, as by pbrt's cameras: its space is left-handed.
+  bool isMirrored() const { return dot(cross(forward, up), right) < 0.0f; }
 };
 
 // A camera of the scene file and its film.
@@ -164,6 +166,10 @@ struct Scene {
   // Diagonal of the box around triangles that lie near the others; scales ray-origin offsets.
   float nearSize = INFINITY;
   float offsetSize() const { return std::min(nearSize, bounds.diagonal()); }
+  // Least distance by which ray origins are moved off their surfaces. rayOffset() adds what floats
+  // of the magnitude of the largest coordinate need.
+  float minRayOffset() const { return offsetSize() * 0x1p-20f; }
+  static float rayOffset(float magnitude, float min) { return magnitude * 0x1p-18f + min; }
   // Origin of the scene's coordinates, in those of the files. It is 0 unless the scene lies so far
   // from 0 that floats would resolve it coarsely (sceneOrigin in affine.h).
   std::array<double, 3> origin{};

@@ -4,7 +4,7 @@
 #include <type_traits>
 
 #include "core/hash.h"
-#include "scene/material_inputs.h"
+#include "scene/visit_material.h"
 
 namespace bnvpl {
 

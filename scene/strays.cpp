@@ -14,7 +14,7 @@ namespace {
 constexpr double kTimesAsFar = 1000.0;
 constexpr double kMaxExtent = 1.0 / 4.0;                           // extent over distance
 constexpr double kMaxDirections = 4.0 * std::numbers::pi / 250.0;  // solid angle of all strays
-constexpr double kFurthestCut = 1e9;                               // larger scenes are refused
+constexpr double kMaxCutDistance = 1e9;                            // larger scenes are refused
 constexpr size_t kSamples = size_t{1} << 16;
 
 double extentOf(const Corners& c) {
@@ -138,7 +138,7 @@ bool Strays::mayStay(const Corners& piece) const {
 
 bool Strays::reaches(const Corners& triangle) const {
   const double d = distance(triangle);
-  return d > far_ && d <= kFurthestCut && extentOf(triangle) > leastDistance(triangle);
+  return d > far_ && d <= kMaxCutDistance && extentOf(triangle) > leastDistance(triangle);
 }
 
 Strays Strays::from(const FilePoint& origin) const {

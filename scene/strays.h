@@ -14,8 +14,8 @@ using Corners = std::array<FilePoint, 3>;
 
 // Classifies the triangles of a scene. A stray lies more than 1000 times as far from the scene's
 // middle as three quarters of the triangles, and is small relative to that distance. Scene::bounds,
-// which sizes the disc where photons of the environment start, leaves out strays. Ray-origin
-// offsets scale with the near triangles alone.
+// on whose faces photons from infinity start, leaves out strays. Ray-origin offsets scale with the
+// near triangles alone.
 class Strays {
  public:
   Strays() = default;

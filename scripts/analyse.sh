@@ -5,10 +5,16 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
+for program in cppcheck clang-tidy; do
+  command -v "$program" >/dev/null || {
+    echo "analyse.sh: $program is not installed; apt-get install $program" >&2
+    exit 2
+  }
+done
 echo "cppcheck"
 cppcheck --quiet --std=c++20 --language=c++ --library=googletest \
   --enable=warning,style,performance,portability --suppressions-list=scripts/cppcheck.supp \
-  --error-exitcode=1 -I . core formats images scene spatial transport tools tests bench
+  --error-exitcode=1 -I . core formats images scene spatial transport tools tests bench fuzz
 
 # This makes compile_commands.json. Clang cannot read GCC's precompiled headers.
 cmake --preset release -B build/analyse -DBNVPL_TESTS=ON -DBNVPL_BENCH=ON \

@@ -41,8 +41,9 @@ check scenes scenes/generate.py scenes/generator
 check scenes/gltf-room scenes/gltf-room/*.py
 check scripts scripts/*.py
 check tests/bytes:pipelines:python tests/{bytes,formats,images,inspect,pipeline,shards}/*.py
-check tests/cluster:pipelines:eval/scaling tests/cluster/*.py
+check tests/cluster:pipelines:pipelines/slurm:eval/scaling tests/cluster/*.py
 check tests/faults tests/faults/*.py
 check tests/scene/blender tests/scene/blender/*.py
+check scripts tests/source/*.py
 ((failed)) || echo "clean"
 exit "$failed"

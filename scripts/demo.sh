@@ -12,4 +12,6 @@ cmake --build --preset release --target vpl-place vpl-eliminate vpl-estimate vpl
 echo "Rendering scenes/u-shape"
 make --no-print-directory -f pipelines/Makefile SCENE=scenes/u-shape/scene.toml OUT=out/u-shape \
   BIN=build/release/bin CANDIDATES=120k VPLS=3k PHOTONS=10M SPP=8 RENDER_FLAGS='--exposure 4.2' "$@"
-echo "The picture: $PWD/out/u-shape/image.png"
+out=out/u-shape
+for setting; do [[ $setting == OUT=* ]] && out=${setting#OUT=}; done
+echo "The picture: $(realpath -- "$out")/image.png"

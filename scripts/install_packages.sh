@@ -18,7 +18,7 @@ packages=(
   libflann-dev liblz4-dev                                 # kd-tree; FLANN's headers need lz4
   libopenvdb-dev libboost-iostreams-dev                   # point grid; FindOpenVDB requires Boost
   libopenexr-dev libpng-dev "$jpeg"                       # images
-  zlib1g-dev libstb-dev                                   # gzip; TGA, BMP, written PNG
+  zlib1g-dev libstb-dev                                   # gzip; TGA, BMP
   libtinyobjloader-dev libtomlplusplus-dev libcli11-dev   # meshes, scene.toml, options
   libtinygltf-dev libdraco-dev libmeshoptimizer-dev       # glTF, and its compressions
   nlohmann-json3-dev libxxhash-dev                        # provenance, checksums

@@ -1,6 +1,5 @@
 #include "spatial/cell_lists.h"
 
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/PointIndexGrid.h>
 
 #include <algorithm>

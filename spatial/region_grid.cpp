@@ -25,10 +25,11 @@ int levelOf(float radius) {  // binary exponent of the cell width, one to two ra
 }
 
 uint64_t hashOf(int64_t x, int64_t y, int64_t z, int level, uint32_t facing) {
-  constexpr uint64_t kAxisMask = (uint64_t{1} << 18) - 1;
-  const auto bits = [&](int64_t v) { return static_cast<uint64_t>(v) & kAxisMask; };
-  return mix64(bits(x) | bits(y) << 18 | bits(z) << 36 | uint64_t{facing} << 54 |
-               static_cast<uint64_t>(level + 128) << 57) |
+  // Odd numbers without small common multiples keep cells apart, however far they lie.
+  return mix64(static_cast<uint64_t>(x) * 0x9e3779b97f4a7c15u +
+               static_cast<uint64_t>(y) * 0xc2b2ae3d27d4eb4fu +
+               static_cast<uint64_t>(z) * 0x165667b19e3779f9u +
+               (static_cast<uint64_t>(level + 128) << 3 | facing)) |
          1;  // 0 marks an empty slot
 }
 

@@ -5,8 +5,8 @@
 #include "tests/support/pipeline.h"
 #include "tools/common/files/escape_text.h"
 #include "tools/common/options/option.h"
+#include "tools/common/options/stage_cli.h"
 #include "tools/common/stage/method.h"
-#include "tools/common/stage/stage_cli.h"
 
 namespace bnvpl::test {
 namespace {
@@ -146,6 +146,7 @@ TEST(Options, NeedsCombine) {
   };
   EXPECT_EQ(refused({{"k", "2"}, {"only", "direct"}}), "");
   EXPECT_EQ(refused({{"k", "2"}, {"area", "0.5"}}), "");
+  EXPECT_EQ(refused({{"k", "2"}, {"only", "direct"}, {"area", "-0"}}), "");
   EXPECT_EQ(refused({{"k", "2"}, {"only", "direct"}, {"area", "0.5"}}),
             "--k has no effect with --only direct and --area 0.5; it needs --only all or --area 0");
   EXPECT_EQ(refused({{"inner", "d"}}), "");

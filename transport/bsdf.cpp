@@ -67,12 +67,12 @@ void Bsdf::finish() {
     s.share /= s.group == LobeGroup::Rough ? rough_ : specular_;
   if (specular_ > 0.0f) specularProbability_ = specular_ / (specular_ + rough_);
   if (specularProbability_ < kMinProbability) specularProbability_ = 0.0f;
-  reflectance_ = std::min(1.0f, maxComponent(albedo_));
-  if (reflectance_ < kMinProbability) reflectance_ = 0.0f;
+  survivalProbability_ = std::min(1.0f, maxComponent(albedo_));
+  if (survivalProbability_ < kMinProbability) survivalProbability_ = 0.0f;
 }
 
-std::optional<RoughLeaving> Bsdf::roughLeaving() const {
-  if (diffuseOnly_) return RoughLeaving{point_.ng, point_.ns};
+std::optional<ExitantFactor> Bsdf::exitantFactor() const {
+  if (diffuseOnly_) return ExitantFactor{point_.ng, point_.ns};
   const Summand* rough = nullptr;
   for (const Summand& s : lobes()) {
     if (s.group != LobeGroup::Rough) continue;
@@ -81,7 +81,7 @@ std::optional<RoughLeaving> Bsdf::roughLeaving() const {
   }
   const auto* coated = std::get_if<CoatedBase>(&rough->lobe);
   if (!coated || rough->frame != 0 || rough->above.weight > 0.0f) return {};
-  return RoughLeaving{point_.ng, point_.ns, coated->ior, coated->alpha};
+  return ExitantFactor{point_.ng, point_.ns, coated->coat, coated->alpha};
 }
 
 // A diffuse base below a coat or layer looks much the same from all directions. Its albedo at

@@ -17,8 +17,8 @@
 #include <type_traits>
 #include <variant>
 
+#include "transport/bsdf/exitant_factor.h"
 #include "transport/bsdf/lobe_frame.h"
-#include "transport/bsdf/rough_leaving.h"
 #include "transport/bsdf_models.h"
 
 namespace bnvpl {
@@ -65,7 +65,7 @@ class Bsdf {
   bool diffuseOnly() const { return diffuseOnly_; }
   // How the rough group's value depends on wo, where it is a product of a factor of wi and one of
   // wo; else empty.
-  std::optional<RoughLeaving> roughLeaving() const;
+  std::optional<ExitantFactor> exitantFactor() const;
   // The part of the rough group's value that is such a product; black where there is none.
   DiffusePart diffusePart() const;
   // Probability with which a path should take the specular group; 0 or 1 if there is only one.
@@ -75,15 +75,15 @@ class Bsdf {
   // Whether light crosses the surface by lobes of the specular group.
   bool transmits() const { return transmits_; }
   // Survival probability for Russian roulette: the largest channel of the albedo of both groups.
-  float reflectance() const { return reflectance_; }
+  float survivalProbability() const { return survivalProbability_; }
 
   // BSDF value of one group times |cos(ns, wi)|, 1/sr, for radiance transport; 0 for delta lobes.
   // Directions below the surface have a value where the group transmits.
   Vec3 eval(LobeGroup group, Vec3 wi) const {
-    return evaluate<TransportMode::Radiance>(group, wi, Wanted::OnlyValue).value;
+    return evaluate<TransportMode::Radiance>(group, wi, Terms::OnlyValue).value;
   }
   float pdf(LobeGroup group, Vec3 wi) const {
-    return evaluate<TransportMode::Radiance>(group, wi, Wanted::OnlyPdf).pdf;
+    return evaluate<TransportMode::Radiance>(group, wi, Terms::OnlyPdf).pdf;
   }
   // Upper bound of eval(Rough, wi) over directions whose cosine with ns is at most maxCosNs and
   // whose cosine with any axis a is at most maxCosine(a).
@@ -126,7 +126,7 @@ class Bsdf {
     LobeGroup group = LobeGroup::Rough;
     bool smooth = false;
   };
-  enum class Wanted { OnlyValue, OnlyPdf, Both };
+  enum class Terms { OnlyValue, OnlyPdf, Both };
   struct Evaluated {
     Vec3 value;  // BSDF times the cosine for the transport
     float pdf = 0.0f;
@@ -139,7 +139,7 @@ class Bsdf {
   static float meanThrough(const CoatAbove& above, float most);
   Vec3 glossyBound(uint32_t frame, float maxCosine, float cosMirror) const;
   template <TransportMode transport>
-  Evaluated evaluate(LobeGroup group, Vec3 wi, Wanted wanted) const;
+  Evaluated evaluate(LobeGroup group, Vec3 wi, Terms terms) const;
   Evaluated evaluateDiffuse(TransportMode transport, Vec3 wi) const;
   bool sampleDiffuse(TransportMode transport, Point2 at, BsdfSample& out) const;
   // Transmittance of the coat above the lobe for wo and wi; 1 without a coat.
@@ -162,7 +162,7 @@ class Bsdf {
   // Lambert's law needs no frame: the point's own is made with the first other lobe.
   uint32_t frameCount_ = 0;
   bool diffuseOnly_ = true, specularIsDelta_ = true, albedoIsConstant_ = true, transmits_ = false;
-  float specularProbability_ = 0.0f, reflectance_ = 0.0f;
+  float specularProbability_ = 0.0f, survivalProbability_ = 0.0f;
   float rough_ = 0.0f, specular_ = 0.0f;  // sums of the lobes' largest albedos
   Vec3 albedo_, roughAlbedo_, diffuseValue_;
   uint32_t count_ = 0;

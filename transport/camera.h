@@ -6,7 +6,7 @@
 
 #include "core/sampling.h"
 #include "scene/scene.h"
-#include "transport/accelerator.h"
+#include "transport/accelerator/accelerator.h"
 
 namespace bnvpl {
 

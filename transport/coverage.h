@@ -11,7 +11,7 @@
 #include "core/sampling.h"
 #include "spatial/compatible_surface.h"
 #include "spatial/reach_grid.h"
-#include "transport/accelerator.h"
+#include "transport/accelerator/accelerator.h"
 
 namespace bnvpl {
 
@@ -116,7 +116,8 @@ class Coverage {
   // Both ends of a guard ray are lifted by this share of the VPL's reach, so that the facets of a
   // curved surface do not occlude it (docs/theory.md, "Guards").
   static constexpr float kLift = 0.1f;
-  static constexpr int kMaxLayers = 16;  // max number of surfaces within the height of a VPL's disk
+  static constexpr int kMaxLayers =
+      1024;  // max number of surfaces within the height of a VPL's disk
 
   bool inSight(Vec3 at, Vec3 normal, uint32_t i) const {
     const float lift = kLift * reach_[i];

@@ -24,7 +24,7 @@ unsigned addOutgoingRadiance(const Accelerator& accel, const LightSet& lights, c
                        {learnedBy(strata), LightChoice::One, photons, sink.times(throughput)},
                        BsdfRays{bsdf}, LightNumbers(rng));
 
-    const float survive = bounce == 0 ? 1.0f : bsdf.reflectance();
+    const float survive = bounce == 0 ? 1.0f : bsdf.survivalProbability();
     if (rng.next() >= survive) return bounce + 1;
     BsdfSample scattered;
     Ray next;
@@ -38,9 +38,9 @@ unsigned addOutgoingRadiance(const Accelerator& accel, const LightSet& lights, c
         accel, lights, next.origin, next.direction, arrival, rng,
         {nullptr, lightSampler, sink.times(throughput),
          length.directOnly ? LightGroupSink{} : groups.indirect.times(throughput)});
-    sum += throughput * vertex.emissionFirst;
+    sum += throughput * vertex.firstSegmentEmission;
     if (length.directOnly) return bounce + 1;
-    indirect += throughput * vertex.directLater;
+    indirect += throughput * vertex.lightOverSpecular;
     if (bounce == length.maxBounces || !vertex.rough) return bounce + 1;
     throughput *= vertex.throughput;
   }

@@ -1,7 +1,7 @@
 // Light that leaves a rough vertex, estimated by path tracing.
 #pragma once
 
-#include "transport/spatial_light_sampler.h"
+#include "transport/direct_light/spatial_light_sampler.h"
 #include "transport/specular_path.h"
 
 namespace bnvpl {

@@ -1,6 +1,6 @@
 #include "transport/specular_path.h"
 
-#include "transport/spatial_light_sampler.h"
+#include "transport/direct_light/spatial_light_sampler.h"
 #include "transport/walk.h"
 
 namespace bnvpl {
@@ -12,6 +12,21 @@ SpecularPath followSpecularPath(const Accelerator& accel, const LightSet& lights
   accel.closestHit(origin, direction, first);
   return followSpecularPath(accel, lights, first, direction, start, rng, specularLights);
 }
+
+namespace {
+
+LearnedStrata strataAt(const SpecularPath& vertex, const SpecularLightSampling& lights) {
+  if (vertex.specularBounces == 1 && lights.first) return *lights.first;
+  return lights.others ? lights.others->at(vertex.hit.position, vertex.hit.ng) : LearnedStrata{};
+}
+
+Vec3 specularlyReflected(const Accelerator& accel, const LightSet& lights, const Bsdf& bsdf,
+                         const LightSampling& sampling, Rng& rng) {
+  return directLight(accel, lights, Reflected{bsdf, LobeGroup::Specular}, sampling,
+                     BsdfRays{bsdf, 1.0f, LobeGroup::Specular}, LightNumbers(rng));
+}
+
+}  // namespace
 
 SpecularPath followSpecularPath(const Accelerator& accel, const LightSet& lights,
                                 const SurfacePoint& first, Vec3 direction, const Arrival& start,
@@ -26,9 +41,10 @@ SpecularPath followSpecularPath(const Accelerator& accel, const LightSet& lights
   if (!(start.photons.misRatio > 0.0f)) arrival.photons = {};
   while (true) {
     const bool straight = end.specularBounces == 0;
-    Vec3& found = straight ? end.emissionFirst : end.directLater;
-    arrival.groups = (straight ? specularLights.emissionFirst : specularLights.directLater)
-                         .times(end.throughput);
+    Vec3& found = straight ? end.firstSegmentEmission : end.lightOverSpecular;
+    arrival.groups =
+        (straight ? specularLights.firstSegmentEmission : specularLights.lightOverSpecular)
+            .times(end.throughput);
     if (end.hit.triangle == kNone) {
       found += end.throughput * emissionAtInfinity(lights, direction, arrival);
       return end;
@@ -53,14 +69,13 @@ SpecularPath followSpecularPath(const Accelerator& accel, const LightSet& lights
     photons = photons.beyond(bsdf, end.specularBounces == 1);
     if (!bsdf.specularIsDelta()) {
       end.hasNonDelta = true;
-      strata = end.specularBounces == 1 && specularLights.first ? *specularLights.first
-               : specularLights.others ? specularLights.others->at(end.hit.position, end.hit.ng)
-                                       : LearnedStrata{};
-      end.directLater += end.throughput *
-                         directLight(accel, lights, Reflected{bsdf, LobeGroup::Specular},
-                                     {learnedBy(strata), LightChoice::One, photons,
-                                      specularLights.directLater.times(end.throughput)},
-                                     BsdfRays{bsdf, 1.0f, LobeGroup::Specular}, LightNumbers(rng));
+      if (specularLights.wanted) {
+        strata = strataAt(end, specularLights);
+        const LightSampling sampling{learnedBy(strata), LightChoice::One, photons,
+                                     specularLights.lightOverSpecular.times(end.throughput)};
+        end.lightOverSpecular +=
+            end.throughput * specularlyReflected(accel, lights, bsdf, sampling, rng);
+      }
     }
     BsdfSample sample;
     Ray next;

@@ -2,7 +2,7 @@
 // integrators share this definition of a specular path.
 #pragma once
 
-#include "transport/direct_light.h"
+#include "transport/direct_light/direct_light.h"
 
 namespace bnvpl {
 
@@ -13,7 +13,9 @@ class SpatialLightSampler;
 struct SpecularLightSampling {
   const LearnedStrata* first = nullptr;         // for the first specular vertex
   const SpatialLightSampler* others = nullptr;  // for the others, and for the first without `first`
-  LightGroupSink emissionFirst = {}, directLater = {};  // receive the members of SpecularPath
+  LightGroupSink firstSegmentEmission = {},
+                 lightOverSpecular = {};  // receive the members of SpecularPath
+  bool wanted = true;  // whether near-specular vertices sample lights; else their light is missing
 };
 
 struct SpecularPath {
@@ -22,8 +24,8 @@ struct SpecularPath {
   Vec3 throughput;  // from the start to the hit, over the probability of choosing `rough`
   unsigned specularBounces = 0;  // number of specular vertices
   bool hasNonDelta = false;      // whether one of them has a near-specular rather than a delta lobe
-  Vec3 emissionFirst;            // emission hit by the first segment
-  Vec3 directLater;              // emission hit later, and light sampled at near-specular vertices
+  Vec3 firstSegmentEmission;     // emission hit by the first segment
+  Vec3 lightOverSpecular;        // emission hit later, and light sampled at near-specular vertices
   float firstDistance = INFINITY;  // distance of the first hit along the ray
 };
 

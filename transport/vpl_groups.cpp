@@ -28,7 +28,7 @@ bool read(const VplTable& table, std::string_view name, uint32_t groups, std::ve
 
 }  // namespace
 
-void balanceGroups(std::span<Vec3> groups, Vec3 total) {
+void addRoundingToLargest(std::span<Vec3> groups, Vec3 total) {
   for (size_t c = 0; c < 3 && !groups.empty(); ++c) {
     double sum = 0.0;
     Vec3* largest = &groups[0];

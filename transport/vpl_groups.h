@@ -20,7 +20,7 @@ struct VplGroups {
 };
 
 // Adds what rounding leaves between the groups and `total` to the largest group of each channel.
-void balanceGroups(std::span<Vec3> groups, Vec3 total);
+void addRoundingToLargest(std::span<Vec3> groups, Vec3 total);
 
 // Adds the columns to the table, in place of earlier ones.
 void addVplGroups(const VplGroups& groups, VplTable& table);

@@ -15,14 +15,14 @@ struct LobeChoice {
 };
 // Probability of the specular group. `roughImportance` scales that of the rough group before
 // normalisation, 0..1.
-inline float probabilityOfSpecular(const Bsdf& bsdf, float roughImportance) {
+inline float specularProbability(const Bsdf& bsdf, float roughImportance) {
   const float specular = bsdf.specularProbability();
   return roughImportance < 1.0f && specular > 0.0f
              ? specular / (specular + (1.0f - specular) * roughImportance)
              : specular;
 }
 inline LobeChoice chooseLobes(const Bsdf& bsdf, Rng& rng, float roughImportance = 1.0f) {
-  const float specular = probabilityOfSpecular(bsdf, roughImportance);
+  const float specular = specularProbability(bsdf, roughImportance);
   return rng.next() < specular ? LobeChoice{LobeGroup::Specular, specular}
                                : LobeChoice{LobeGroup::Rough, 1.0f - specular};
 }

@@ -70,7 +70,7 @@ def _point(lamp: Lamp) -> Section:
 
 
 def _spot(lamp: Lamp) -> Section:
-    """Blender's watts are those of a point. Its rim is soft in the cosine, ours in the angle."""
+    """Blender's watts are those of a point. The rim is soft in the cosine, as in scene.toml."""
     half = lamp.spot_size / 2
     edge = math.cos(half)
     inner = math.acos(min(1.0, edge + (1.0 - edge) * lamp.spot_blend))

@@ -8,7 +8,9 @@ MIN_SAMPLE_S = 6e-5  # CPU time for one sample a pixel; less is the noise of two
 CLOSE_ENOUGH = 0.1  # to the time, for a number of samples that has been run
 SECOND_TRIAL = 0.25  # as a share of the time
 TOO_LONG = 1.25  # times the time, for a run of no more samples than a first trial has
-MAX_TRIALS = 4
+MAX_TRIALS = 5
+# Most growth of the samples to the next trial: the noise of two short ones may hide the slope.
+MAX_STEP = 8
 
 
 def samples_within(time_s: float, few: tuple[int, float], many: tuple[int, float]) -> float:
@@ -39,7 +41,8 @@ def fitting_spp(
         trial = (spp, cpu_s(spp))
         if abs(trial[1] - time_s) < CLOSE_ENOUGH * time_s:
             break
-        fitting = min(most, max(1, round(samples_within(time_s, before, trial))))
+        fitting = max(1, round(samples_within(time_s, before, trial)))
+        fitting = min(most, MAX_STEP * spp, fitting)
         if fitting in (spp, before[0]):
             return fitting
         before, spp = trial, fitting

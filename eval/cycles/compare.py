@@ -72,7 +72,10 @@ def block_sums(image: npt.NDArray[Any]) -> npt.NDArray[Any]:
 def block_map(
     ours: npt.NDArray[Any], cycles: npt.NDArray[Any]
 ) -> tuple[npt.NDArray[Any], npt.NDArray[Any]]:
-    """Difference (ours - Cycles) of each block, relative to Cycles and in standard errors."""
+    """Difference (ours - Cycles) of each block, relative to Cycles and in standard errors.
+
+    Both are NaN for blocks that are black in both.
+    """
     (a, va), (b, vb) = mean_and_variance(ours), mean_and_variance(cycles)
     difference = block_sums(a - b)
     total = block_sums(b)
@@ -81,7 +84,8 @@ def block_map(
         relative = np.where(total > 0.0, difference / total, 0.0)
         # A block without noise that differs at all differs beyond doubt.
         z = np.where(error > 0.0, difference / error, np.where(difference == 0.0, 0.0, 1e3))
-    return relative, z
+    black = (total == 0.0) & (difference == 0.0)
+    return np.where(black, np.nan, relative), np.where(black, np.nan, z)
 
 
 def compare(ours: npt.NDArray[Any], cycles: npt.NDArray[Any]) -> dict[str, Any]:
@@ -93,13 +97,16 @@ def compare(ours: npt.NDArray[Any], cycles: npt.NDArray[Any]) -> dict[str, Any]:
     for channel, name in enumerate(("red", "green", "blue")):
         result[name] = ratio_with_error(ours[..., channel], cycles[..., channel])
     relative, z = block_map(grey_ours, grey_cycles)
-    worst = np.unravel_index(np.argmax(np.abs(z)), z.shape)
+    lit = ~np.isnan(z)
+    if not lit.any():
+        relative, z = np.zeros_like(relative), np.zeros_like(z)
+    worst = np.unravel_index(np.nanargmax(np.abs(z)), z.shape)
     result["blocks"] = {
-        "count": int(z.size),
+        "count": int(lit.sum()),  # without those that are black in both
         "pixels": BLOCK,
-        "mean_square_z": float(np.mean(z**2)),
+        "mean_square_z": float(np.nanmean(z**2)),
         "beyond_3_errors": int((np.abs(z) > 3).sum()),
-        "root_mean_square_relative": float(np.sqrt(np.mean(relative**2))),
+        "root_mean_square_relative": float(np.sqrt(np.nanmean(relative**2))),
         "worst": {
             "x": int(worst[1]) * BLOCK,
             "y": int(worst[0]) * BLOCK,

@@ -14,6 +14,7 @@ vpl-render or an input is missing or fails; 5 if a mean differs by more, or is t
 from __future__ import annotations
 
 import argparse
+import hashlib
 import json
 import platform
 import re
@@ -31,6 +32,7 @@ from outputs import RESULTS, output_guard
 from scene_source import SceneError
 
 ROOT = Path(__file__).resolve().parents[2]
+SCENE_FILES = {".toml", ".obj", ".mtl", ".glb", ".gltf", ".pbrt", ".hdr"}
 WALKS = 64  # number of batches of walk.py
 EXIT_OK, EXIT_USAGE, EXIT_INPUT, EXIT_DIFFERENT = 0, 2, 3, 5
 
@@ -74,7 +76,7 @@ def parse_arguments(arguments: list[str]) -> argparse.Namespace:
     parser.add_argument(
         "--reuse",
         action="store_true",
-        help="keep images of an earlier run with the same samples and seeds",
+        help="keep images of an earlier run of the same programs and scene, samples and seeds",
     )
     parser.add_argument(
         "--encoded-textures",
@@ -92,9 +94,39 @@ def parse_arguments(arguments: list[str]) -> argparse.Namespace:
     return options
 
 
+def made_by(scene: Path, case: Case, options: argparse.Namespace) -> str:
+    """What the images of a case depend on, but for samples and seeds, which their names tell."""
+    digest = hashlib.sha256(repr(case).encode())
+    for program in options.vpl_render, options.blender:
+        digest.update(first_line([program, "--version"]).encode())
+    made = sorted(file for file in scene.parent.iterdir() if file.suffix in SCENE_FILES)
+    for file in [*made, *Path(__file__).parent.glob("*.py"), *meshes_of(scene)]:
+        digest.update(file.read_bytes())
+    return digest.hexdigest()
+
+
+def meshes_of(scene: Path) -> list[Path]:
+    """Files outside its folder that a prepared scene names."""
+    if scene.suffix != ".toml":
+        return [scene]
+    names = re.findall(r'^(?:file|materials) = "(.*)"$', scene.read_text(), re.MULTILINE)
+    return [Path(name) for name in names if Path(name).is_file()]
+
+
+def drop_others(folder: Path, made: str) -> None:
+    """Removes the images of a folder unless they were made by the same."""
+    mark = folder / "made_by.txt"
+    if not (mark.is_file() and mark.read_text() == made):
+        for image in folder.glob("*.exr"):
+            if re.match(r"(ours|cycles)", image.name):
+                image.unlink()
+    mark.write_text(made)
+
+
 def check(case: Case, options: argparse.Namespace) -> dict[str, Any]:
     folder = options.out / case.name
     scene = prepare(case, ROOT / "scenes", folder)
+    drop_others(folder, made_by(scene, case, options))
     ours, our_seconds = render_ours(case, scene, options)
     cycles, cycles_seconds = render_cycles(case, scene, options)
     spp, cycles_spp = samples(case, options)
@@ -144,7 +176,9 @@ def first_line(command: list[str]) -> str:
 
 def describe_run(options: argparse.Namespace) -> dict[str, Any]:
     git = ["git", "-C", str(ROOT)]
-    parts = ["core", "formats", "scene", "scenes", "tools/common", "tools/render", "transport"]
+    parts = (
+        "core formats images scene scenes spatial tools/common tools/render transport eval/cycles"
+    ).split()
     changed = first_line([*git, "status", "--porcelain", "--", *parts]) != ""
     cpu = re.search(r"model name\s*: (.*)", Path("/proc/cpuinfo").read_text())
     return {

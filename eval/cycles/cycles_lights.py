@@ -37,10 +37,10 @@ def make_lamp(light: dict[str, Any], name: str) -> None:
         lamp.energy = peak * 4.0 * math.pi
         lamp.shadow_soft_size = 0.0
     if light["type"] == "spot":
-        if light.get("falloff_deg", 0.0) > 0.0:
-            raise SceneError("spot light: Cycles' soft rim has another shape; use falloff_deg 0")
-        lamp.spot_size = 2.0 * math.radians(light["cone_deg"])
-        lamp.spot_blend = 0.0
+        outer = math.radians(light["cone_deg"])
+        inner = outer - math.radians(light.get("falloff_deg", 0.0))
+        lamp.spot_size = 2.0 * outer
+        lamp.spot_blend = (math.cos(inner) - math.cos(outer)) / (1.0 - math.cos(outer))
         undo_cosine(lamp)
     if "direction" in light:
         forward = np.array(light["direction"], float)

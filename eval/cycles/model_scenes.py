@@ -247,6 +247,8 @@ def _pbrt_material(data: dict[str, Any]) -> str:
     ]
     if "roughness" in data:
         words.append('"bool remaproughness" false')
+    if data["type"].startswith("coated"):
+        words.append('"float thickness" 0')  # coats of Cycles do not absorb
     return " ".join(words)
 
 

@@ -22,6 +22,7 @@ sys.path.insert(0, str(HERE))
 
 import cases  # noqa: E402
 import compare  # noqa: E402
+import cross_check  # noqa: E402
 from both_renderers import cycles_bounces, missing_images  # noqa: E402
 from in_folder import InFolder  # noqa: E402
 from judgement import verdict  # noqa: E402
@@ -58,6 +59,15 @@ class Statistics(unittest.TestCase):
         self.assertAlmostEqual(blocks["worst"]["relative"], 1.04, delta=0.2)
         self.assertEqual(blocks["count"], 25)
 
+    def test_black_blocks_do_not_dilute_the_errors(self) -> None:
+        lit = compare.compare(self.a, self.b)["blocks"]
+        dark = np.zeros((4, 40, 360, 3))
+        wide = [np.concatenate([image, dark], axis=2) for image in (self.a, self.b)]
+        blocks = compare.compare(*wide)["blocks"]
+        for name in "mean_square_z", "root_mean_square_relative":
+            self.assertAlmostEqual(blocks[name], lit[name], delta=0.15 * lit[name])
+        self.assertEqual(compare.compare(dark, dark)["blocks"]["mean_square_z"], 0.0)
+
     def test_black_against_black_and_against_light(self) -> None:
         black = np.zeros_like(self.a)
         self.assertEqual(compare.compare(black, black)["mean"]["ratio"], 1.0)
@@ -90,6 +100,17 @@ class CommandLine(InFolder):
     def test_indirect_needs_the_direct_picture(self) -> None:
         self.assertEqual(cycles_bounces((cases.INDIRECT,)), [0, 32])
         self.assertEqual(cycles_bounces((cases.View("all", 5),)), [5])
+
+    def test_images_of_another_build_or_scene_are_not_reused(self) -> None:
+        self.write("ours.all.16spp.1.exr", "")
+        self.write("sky.exr", "")
+        cross_check.drop_others(self.folder, "a")
+        self.assertEqual([file.name for file in self.folder.glob("*.exr")], ["sky.exr"])
+        self.write("ours.all.16spp.1.exr", "")
+        cross_check.drop_others(self.folder, "a")
+        self.assertTrue((self.folder / "ours.all.16spp.1.exr").is_file())
+        cross_check.drop_others(self.folder, "b")
+        self.assertFalse((self.folder / "ours.all.16spp.1.exr").is_file())
 
     def test_reuse_renders_only_what_is_missing(self) -> None:
         def path(bounces: int, seed: int) -> Path:

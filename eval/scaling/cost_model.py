@@ -2,6 +2,7 @@
 """Fits pipelines/cost_model.json, the cost of each stage, to runs, and checks it on other runs.
 
     eval/scaling/cost_model.py              measure, fit, check; about ten minutes of one core
+    eval/scaling/cost_model.py --once       the same without repeats
     eval/scaling/cost_model.py --keep F     keep measurements in F, repeat none that it has
     eval/scaling/cost_model.py --table      print the tables of README.md from cost_model.json
 
@@ -12,8 +13,10 @@ two least agree within 4 %; the least counts. design.py lists the runs.
 import argparse
 import dataclasses
 import json
+import subprocess
 import sys
 import tempfile
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -30,6 +33,7 @@ import scenes  # noqa: E402
 import size  # noqa: E402
 
 Row = dict[str, Any]
+KEYS = ("build", "role", "scene", "triangles", "stage", "counts")  # what tells runs apart
 
 
 @dataclasses.dataclass(frozen=True)
@@ -54,14 +58,24 @@ def make_scene(name: str, triangles: int, folder: Path) -> Scene:
 
 
 def same_run(a: Row, b: Row) -> bool:
-    return all(a[key] == b[key] for key in ("role", "scene", "triangles", "stage", "counts"))
+    return all(a.get(key) == b[key] for key in KEYS)
 
 
-def measure_all(bin_folder: Path, had: list[Row]) -> list[Row]:
+def build_of(bin_folder: Path) -> str:
+    """The version and build of the tools."""
+    command = [str(bin_folder / "vpl-render"), "--version"]
+    return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
+
+
+def measure_all(
+    bin_folder: Path, had: list[Row], once: bool, keep: Callable[[list[Row]], None]
+) -> list[Row]:
     """Measures all runs that `had` lacks. Returns one row a run, with its figures.
 
-    Each round measures every run that still needs a repeat, so repeats lie apart in time.
+    Each round measures every run that still needs a repeat, so repeats lie apart in time. keep()
+    gets the rows that are done after each of them.
     """
+    build = build_of(bin_folder)
     with tempfile.TemporaryDirectory(prefix="bnvpl-cost-") as name:
         bench, known, runs, rows = measure.Bench(bin_folder, Path(name)), {}, [], []
         groups = [
@@ -77,6 +91,7 @@ def measure_all(bin_folder: Path, had: list[Row]) -> list[Row]:
                 known[key] = make_scene(scene, triangles, Path(name))
             for stage, given in chosen:
                 row = {
+                    "build": build,
                     "role": role,
                     "scene": scene,
                     "triangles": known[key].triangles,
@@ -86,7 +101,7 @@ def measure_all(bin_folder: Path, had: list[Row]) -> list[Row]:
                 if found := [each for each in had if same_run(each, row)]:
                     rows += found
                 else:
-                    runs.append((known[key], measure.Repeated(row)))
+                    runs.append((known[key], measure.Repeated(row, once)))
         while wanted := [(scene, run) for scene, run in runs if run.wanted()]:
             for made, run in wanted:
                 run.taken.append(bench.measure(made, run.row["stage"], counts_of(run.row)))
@@ -95,6 +110,7 @@ def measure_all(bin_folder: Path, had: list[Row]) -> list[Row]:
                 file=sys.stderr,
                 flush=True,
             )
+            keep(rows + [run.result() for _, run in runs if not run.wanted()])
         return rows + [run.result() for _, run in runs]
 
 
@@ -164,17 +180,20 @@ def main() -> None:
     )
     parser.add_argument("--bin", type=Path, default=ROOT / "build/release/bin")
     parser.add_argument("--keep", type=Path, metavar="F")
+    parser.add_argument("--once", action="store_true", help="no repeats, on a quiet machine")
     parser.add_argument("--table", action="store_true")
     options = parser.parse_args()
     if not options.table:
         if options.keep:
             output_guard.or_exit(output_guard.check, options.keep, ROWS, "--keep")
         had = json.loads(options.keep.read_text()) if options.keep and options.keep.exists() else []
-        rows = measure_all(options.bin.resolve(), had)
-        if options.keep:
-            output_guard.or_exit(
-                output_guard.write, options.keep, json.dumps(rows, indent=1) + "\n", ROWS, "--keep"
-            )
+
+        def keep(rows: list[Row]) -> None:
+            if options.keep:
+                text = json.dumps(rows, indent=1) + "\n"
+                output_guard.or_exit(output_guard.write, options.keep, text, ROWS, "--keep")
+
+        rows = measure_all(options.bin.resolve(), had, options.once, keep)
         rates = fitted(rows)
         model = cost.Model(rates)
         cost.MODEL.write_text(

@@ -37,6 +37,14 @@ def count(text: str) -> float:
         raise argparse.ArgumentTypeError(str(problem)) from None
 
 
+def count_option(name: str, text: str) -> float:
+    """The count that an option names. Ends the program if it is none."""
+    try:
+        return cost.count(text)
+    except ValueError as problem:
+        stage_options.refuse(f"{name}: {problem}")
+
+
 def positive(text: str) -> float:
     value = count(text)
     if value <= 0:
@@ -209,11 +217,11 @@ def jobs_of(options: argparse.Namespace) -> list[farm_graph.Job]:
     )
     whole = cost.Counts(
         options.triangles,
-        count(options.candidates),
-        count(options.vpls),
-        count(options.photons),
+        count_option("--candidates", options.candidates),
+        count_option("--vpls", options.vpls),
+        count_option("--photons", options.photons),
         options.size,
-        count(options.spp),
+        count_option("--spp", options.spp),
     )
     return farm_graph.jobs_of(
         tasks_of(options),

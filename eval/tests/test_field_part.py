@@ -43,6 +43,16 @@ class FittingSamples(unittest.TestCase):
 
         self.assertAlmostEqual(cpu_s(equal_samples.fitting_spp(cpu_s, 2, 12.0)), 12.0, delta=0.6)
 
+    def test_noise_of_two_short_trials_does_not_lead_to_endless_runs(self) -> None:
+        ran: list[int] = []
+
+        def cpu_s(spp: int) -> float:
+            ran.append(spp)
+            return {1: 9.0, 2: 8.9}.get(spp, 5.0 + 2.0 * spp)
+
+        self.assertAlmostEqual(cpu_s(equal_samples.fitting_spp(cpu_s, 1, 30.0)), 30.0, delta=3.0)
+        self.assertLessEqual(max(ran), 16)
+
     def test_no_more_than_the_limit(self) -> None:
         self.assertEqual(self.fitting(0.0, 1e-6, 4.0), equal_samples.MAX_SPP)
 

@@ -1,7 +1,7 @@
 #include "formats/image/exr_header.h"
 
+#include <algorithm>
 #include <fstream>
-#include <iterator>
 #include <map>
 #include <optional>
 #include <string_view>
@@ -80,33 +80,32 @@ std::optional<size_t> channelListBytes(std::string_view bytes) {
   return std::nullopt;
 }
 
-bool isHonest(std::string_view type, uint32_t claimed, std::string_view left) {
-  if (claimed > left.size()) return false;
+// `left`: the bytes that were read from the attribute's value on; `inFile`: those of the file.
+bool isHonest(std::string_view type, uint32_t claimed, std::string_view left, uint64_t inFile) {
+  if (claimed > inFile) return false;
   if (type == "chlist") return claimed == channelListBytes(left);
   if (type == "floatvector") return claimed % 4 == 0;  // OpenEXR would leave a remainder unread
   const auto fixed = kFixedSizes.find(type);
   return fixed == kFixedSizes.end() || claimed == fixed->second;
 }
 
-}  // namespace
-
-void refuseDishonestAttributes(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+// Checks the attributes in the first bytes of a file of `size` bytes. Returns whether the header,
+// or the file, ends in them.
+bool refuseDishonestIn(const fs::path& file, std::string_view bytes, uint64_t size) {
   Walk walk(bytes);
-  if (!walk.skip(kOpeningBytes)) return;
+  if (!walk.skip(kOpeningBytes)) return bytes.size() == size;
   const bool multiPart = (static_cast<unsigned char>(bytes[5]) & kMultiPart) != 0;
   bool ended = true;  // an empty name ends the attributes of a part, a second one the header
   while (const auto name = walk.name()) {
     if (name->empty()) {
-      if (ended || !multiPart) return;
+      if (ended || !multiPart) return true;
       ended = true;
       continue;
     }
     ended = false;
     const auto type = walk.name();
     const auto claimed = type ? walk.number() : std::nullopt;
-    if (!claimed) return;
+    if (!claimed) break;
     // OpenEXR 3.1 reads eight bytes for a size that it counts as four, and so runs into the next
     // attribute.
     if (*type == "idmanifest") {
@@ -114,12 +113,32 @@ void refuseDishonestAttributes(const fs::path& file) {
                                  "' is an ID manifest, which OpenEXR 3.1 cannot read; save the "
                                  "image without it");
     }
-    if (!isHonest(*type, *claimed, walk.left())) {
+    const uint64_t inFile = size - (bytes.size() - walk.left().size());
+    if (*claimed > walk.left().size() && *claimed <= inFile) return false;
+    if (!isHonest(*type, *claimed, walk.left(), inFile)) {
       throw InputError(file, "attribute '" + std::string(*name) + "' claims " +
                                  std::to_string(*claimed) +
                                  " bytes, which its type or the file does not have; make it again");
     }
     walk.skip(*claimed);
+  }
+  return bytes.size() == size;
+}
+
+}  // namespace
+
+void refuseDishonestAttributes(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::error_code unknown;
+  const uint64_t size = fs::file_size(file, unknown);
+  if (unknown) return;
+  std::string bytes;
+  for (uint64_t part = 1 << 16;; part *= 4) {  // few headers are larger, and pixels are not needed
+    const size_t had = bytes.size();
+    bytes.resize(std::min(part, size));
+    in.read(&bytes[had], static_cast<std::streamsize>(bytes.size() - had));
+    if (!in) return;
+    if (refuseDishonestIn(file, bytes, size)) return;
   }
 }
 

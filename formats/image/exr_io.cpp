@@ -20,7 +20,6 @@
 #include "core/read_file.h"
 #include "formats/image/exr_header.h"
 #include "formats/image/exr_standard.h"
-#include "formats/vpl/vpl_layout.h"
 
 namespace bnvpl {
 namespace {

@@ -26,10 +26,11 @@ struct PixelBox {
 // Matrices multiply row vectors from the right, (x, y, z, 1) M, as Imath's do, and are stored row
 // by row. World space is that of the scene's files.
 struct ImageCamera {
-  // To the camera at the origin: x points to the right, y up, and z along the viewing direction.
+  // Transform to the camera at the origin: x points to the right, y up, and z along the viewing
+  // direction.
   std::array<float, 16> worldToCamera{};
-  // To (0, 0) at the upper left corner of the film and (1, 1) at the lower right one, after
-  // division by the fourth coordinate.
+  // Transform to (0, 0) at the upper left corner of the film and (1, 1) at the lower right one,
+  // after division by the fourth coordinate.
   std::array<float, 16> worldToNdc{};
   // Width and centre of the film on the plane at distance 1 from the camera; y points up.
   float screenWindowWidth = 1.0f;

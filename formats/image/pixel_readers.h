@@ -20,8 +20,8 @@ inline constexpr uint32_t kMaxImageSide = 32768;
 void requirePlausible(int64_t width, int64_t height, size_t bytes);
 
 bool isPng(std::string_view bytes);
-// With `rgba` the image has four channels, else its own number. Channels of 16 bits keep their
-// upper 8. A pixel beyond the palette is black.
+// With `rgba` the image has four channels, else its own number. Channels of 16 bits are
+// rounded to 8. A pixel beyond the palette is black.
 Pixels readPng(std::string_view bytes, bool rgba);
 
 bool isJpeg(std::string_view bytes);

@@ -13,7 +13,8 @@ struct Pixels {
   uint32_t width = 0, height = 0;
   uint32_t channels = 0;        // 1: grey; 2: grey, alpha; 3: R, G, B; 4: R, G, B, alpha
   std::vector<uint8_t> values;  // row by row from the top
-  std::string damage;           // why pixels may be wrong; empty for a sound file
+  std::string damage = {};      // why pixels may be wrong; empty for a sound file
+  bool rounded = false;         // the file has 16 bits a channel
 };
 
 // Decodes `bytes`, the content of `file`, whose name is for messages, to R, G, B and alpha. Throws

@@ -38,8 +38,9 @@ class PngReader {
                       height = png_get_image_height(png_, info_);
     requirePlausible(width, height, bytes);
     const bool palette = png_get_color_type(png_, info_) == PNG_COLOR_TYPE_PALETTE;
+    const bool deep = png_get_bit_depth(png_, info_) == 16;
     if (!setFormat(palette, rgba)) fail();
-    Pixels out{width, height, png_get_channels(png_, info_), {}, {}};
+    Pixels out{width, height, png_get_channels(png_, info_), {}, {}, deep};
     const size_t rowBytes = png_get_rowbytes(png_, info_);
     out.values.resize(height * rowBytes);
     std::vector<png_bytep> rows(height);
@@ -67,7 +68,7 @@ class PngReader {
       png_set_packing(png_);  // coloured() looks up the numbers
     } else {
       png_set_expand(png_);
-      png_set_strip_16(png_);
+      png_set_scale_16(png_);
       if (rgba) {
         png_set_gray_to_rgb(png_);
         png_set_add_alpha(png_, 0xff, PNG_FILLER_AFTER);

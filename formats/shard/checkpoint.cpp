@@ -8,7 +8,6 @@
 #include "core/files.h"
 #include "core/hash.h"
 #include "formats/atomic_file.h"
-#include "formats/vpl/vpl_layout.h"
 
 namespace bnvpl {
 namespace {

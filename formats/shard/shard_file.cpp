@@ -6,7 +6,6 @@
 
 #include "core/files.h"
 #include "core/hash.h"
-#include "formats/vpl/vpl_layout.h"
 
 namespace bnvpl {
 namespace {

@@ -9,6 +9,7 @@ import json
 import math
 import re
 import subprocess
+import tomllib
 from typing import Any
 
 import cost
@@ -34,20 +35,33 @@ def look(scene: str, options: argparse.Namespace, *more: str) -> Any:
     return json.loads(done.stdout)
 
 
+def film_of(view: str, scene_film: str) -> str:
+    """Film of a view file, such as 640x480; it lacks the keys that are as in the scene."""
+    try:
+        with open(view, "rb") as file:
+            film = tomllib.load(file).get("film", {})
+    except (OSError, tomllib.TOMLDecodeError) as problem:
+        stage_options.refuse(f"{view}: {problem}; supply a TOML file with [film] and [camera]")
+    width, height = scene_film.split("x")
+    return f"{film.get('width', width)}x{film.get('height', height)}"
+
+
 def pixels_of(seen: dict[str, Any], options: argparse.Namespace) -> int:
     """Pixels of the largest film."""
     words = stage_options.words_of(options.render_flags, "--render-flags")
     if given := re.search(r"--size[= ](\S+)", " ".join(words)):
         films = [given[1]]
     elif options.views:
-        films = [
-            look(options.scene, options, "--view", view)["cameras"][0]["film"]
-            for view in options.views
-        ]
+        films = [film_of(view, seen["cameras"][0]["film"]) for view in options.views]
     else:
         films = [seen["cameras"][0]["film"]]
     sizes = [re.fullmatch(r"(\d+)x(\d+)", film) for film in films]
     return max((int(size[1]) * int(size[2]) for size in sizes if size), default=0)
+
+
+def memory_MiB(predicted_MiB: float) -> int:
+    """Memory to request, a multiple of 64."""
+    return math.ceil((ROOM_MEMORY * predicted_MiB + SPARE_MIB) / 64) * 64
 
 
 class Needs:
@@ -78,7 +92,7 @@ class Needs:
     def memory(self, stage: str) -> str:
         """Memory in the notation of sbatch --mem."""
         mib = 0 if stage == "summary" else self.predict(stage, "memory_MiB")
-        return f"{math.ceil((ROOM_MEMORY * mib + SPARE_MIB) / 64) * 64}M"
+        return f"{memory_MiB(mib)}M"
 
     def time(self, stage: str, cores: int) -> str:
         """Time in minutes, in the notation of sbatch --time."""

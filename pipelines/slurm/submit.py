@@ -204,10 +204,9 @@ class Submission:
                 f"there is no {command[0]} here; run this where Slurm's commands are"
             )
         if done.returncode:
+            ended = "; no job of this run is left" if self.submitted else ""
             self.undo()
-            stage_options.refuse(
-                f"{command[0]} failed, as it says above; no job of this run is left"
-            )
+            stage_options.refuse(f"{command[0]} failed, as it says above{ended}")
         return done.stdout
 
     def undo(self) -> None:

@@ -110,17 +110,23 @@ def run(
     shown = ["--quiet"] if progress is None else ["--quiet", "--progress", "json"]
     with tempfile.TemporaryDirectory(prefix="bnvpl.") as folder:
         stats = Path(options.pop("stats", None) or Path(folder) / "stats.json")
+        before = stats.stat() if stats.exists() else None
         words = [executable, *words_of(tool, spec, arguments, options)]
         words += ["--stats", str(stats), *shown]
         code, text, lines = _execute(words, tool, progress)
-        error = (lines or _reasons(text)).pop() if code else ""  # the last line is the error
+        error = ""
+        if code:  # the last line is the error, unless it is a warning
+            told = bool(lines) and not lines[-1].startswith("warning: ")
+            error = (lines if told else _reasons(text)).pop()
         for line in lines:
             warnings.warn(f"{tool}: {line}", ToolWarning, stacklevel=2)
         if code:
             raise ToolError(code, error, words, text)
         if options.get("estimate"):
-            stats.write_text(text)
-        result: dict[str, Any] = json.loads(stats.read_text()) if stats.exists() else {"text": text}
+            estimated: dict[str, Any] = json.loads(text)
+            return estimated
+        written = stats.exists() and (before is None or not os.path.samestat(before, stats.stat()))
+        result: dict[str, Any] = json.loads(stats.read_text()) if written else {"text": text}
         return result
 
 

@@ -188,9 +188,13 @@ def read_vpl(path: StrPath, verify: bool = True) -> Vpls:
     if verify:
         _check_content(file, header, entries, end)
     text_at = at.entry_at(count)
-    text = file.bytes(text_at, header.provenance_bytes).decode(errors="replace")
-    provenance = at.parse_provenance(text)
-    if provenance is None or "\ufffd" in text:
+    text = ""
+    try:
+        text = file.bytes(text_at, header.provenance_bytes).decode()
+        provenance = at.parse_provenance(text)
+    except UnicodeDecodeError:
+        provenance = None
+    if provenance is None:
         problem = "provenance is not a JSON array of objects, or is nested too deeply"
         file.fail(text_at, problem)
     columns = {entry.name: _column(file, entry, header.count) for entry in entries}

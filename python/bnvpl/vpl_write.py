@@ -122,19 +122,27 @@ def contents(vpls: Vpls) -> list[bytes]:
 def _replace(place: Path, content: list[bytes]) -> None:
     """Puts a whole file in the place of another, with its mode."""
     # The tools remove files of such a name that no process locks, as left by a killed one.
-    partial = place.with_name(f"{place.name}.partial-{os.getpid()}-{next(_partials)}")
+    while True:
+        partial = place.with_name(f"{place.name}.partial-{os.getpid()}-{next(_partials)}")
+        try:
+            file = partial.open("xb")
+            break
+        except FileExistsError:  # a process of another machine or container has the name
+            continue
     try:
-        with partial.open("xb") as file:
-            with contextlib.suppress(OSError):  # some file systems have no locks or modes
+        with file:
+            with contextlib.suppress(OSError):  # some file systems have no locks
                 fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            with contextlib.suppress(OSError):  # or no modes
                 if place.exists():
                     os.fchmod(file.fileno(), place.stat().st_mode & 0o7777)
             file.writelines(content)
             file.flush()
             os.fsync(file.fileno())
             os.replace(partial, place)
-    finally:
+    except BaseException:
         partial.unlink(missing_ok=True)
+        raise
 
 
 def save(path: StrPath, vpls: Vpls) -> None:

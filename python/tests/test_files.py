@@ -75,7 +75,7 @@ class RoundTrip(TestFolder):
         lit.emit_position = np.repeat(lit.position[:, None], 3, axis=1)
         lit.emit_normal = np.repeat(lit.normal[:, None], 3, axis=1)
         lit["mine.heat"] = np.array([[1.5, 2.5], [3.5, 4.5]])
-        lit.provenance.append({"tool": "mine", "options": {"factor": 2}})
+        lit.provenance.append({"tool": "mine", "options": {"factor": 2, "note": "a\ufffdb"}})
         bnvpl.write_vpl(self.folder / "x.vpl", lit)
         self.check("x.vpl")
         back = bnvpl.read_vpl(self.folder / "x.vpl")

@@ -105,6 +105,17 @@ class Running(TestFiles):
         need = bnvpl.run("vpl-render", SCENE, self.lit, output=image, size="8x8", estimate=True)
         self.assertGreater(need["memory_MiB"], 0)
         self.assertFalse(image.exists())
+        notes = self.folder / "notes.txt"
+        notes.write_text("mine")
+        bnvpl.run(
+            "vpl-render", SCENE, self.lit, output=image, size="8x8", estimate=True, stats=notes
+        )
+        self.assertEqual(notes.read_text(), "mine")
+
+    def test_statistics_of_an_earlier_run_are_not_taken(self) -> None:
+        stats = self.folder / "s.json"
+        stats.write_text('{"tool": "vpl-place"}')
+        self.assertIn("text", bnvpl.run("vpl-render", methods=True, stats=stats))
 
     def test_a_failure_has_code_message_and_command(self) -> None:
         with self.assertRaises(bnvpl.ToolError) as caught:

@@ -12,6 +12,7 @@ struct CoatedConductorModel {
   Roughness roughness{Scalar(0.0f)};
   Scalar coatIor{1.5f};
   Roughness coatRoughness{Scalar(0.0f)};
+  Scalar coatThickness{0.0f};  // in mean free paths: the coat absorbs, as in pbrt
 };
 
 template <Like<CoatedConductorModel> M, typename Fn>
@@ -21,6 +22,7 @@ void forEachField(M& m, const Fn& fn) {
   fn("coat_ior", m.coatIor);
   forEachField(m.coatRoughness,
                {"coat_roughness_along", "coat_roughness_across", "coat_roughness_to_alpha"}, fn);
+  fn("coat_thickness", m.coatThickness);
 }
 
 }  // namespace bnvpl

@@ -1,4 +1,4 @@
-// Lambertian base below a dielectric coat; pbrt's `coateddiffuse` with thickness 0 and no medium.
+// Lambertian base below a dielectric coat; pbrt's `coateddiffuse` without a medium.
 #pragma once
 
 #include "scene/models/parameters.h"
@@ -11,6 +11,7 @@ struct CoatedDiffuseModel {
   Colour reflectance{Vec3(0.5f)};  // albedo of the base without the coat
   Scalar ior{1.5f};                // index of the coat
   Roughness roughness{Scalar(0.0f)};
+  Scalar thickness{0.0f};  // the coat's, in mean free paths: it absorbs, as in pbrt
 };
 
 template <Like<CoatedDiffuseModel> M, typename Fn>
@@ -18,6 +19,7 @@ void forEachField(M& m, const Fn& fn) {
   fn("reflectance", m.reflectance);
   fn("ior", m.ior);
   forEachField(m.roughness, kRoughnessNames, fn);
+  fn("thickness", m.thickness);
 }
 
 }  // namespace bnvpl

@@ -9,7 +9,7 @@
 // (scene/textures/expression.h). A format whose textures replace the constant sets it to 1. Faces
 // without texture coordinates use the constant alone. Models clamp their parameters when they are
 // evaluated: reflectances to 0..1, roughness to 0..1, indices of refraction to 0.01..100 (of
-// coats: 1..100, of conductors: 0..100). Constants must be finite.
+// coats: 1..100, of conductors: 0..100), thickness to 0..100. Constants must be finite.
 #pragma once
 
 #include <array>

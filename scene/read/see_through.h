@@ -1,7 +1,7 @@
 // Surfaces of partial opacity, between 0 and 1.
 #pragma once
 
-#include "scene/scene_builder.h"
+#include "scene/builder/scene_builder.h"
 
 namespace bnvpl {
 

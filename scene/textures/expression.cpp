@@ -129,9 +129,9 @@ std::array<float, 2> TextureEvaluator::finestTexel(uint32_t expression) const {
     const auto texels = [&](float across, float up) {  // that a unit of a coordinate passes
       return std::max(std::fabs(across) * width, std::fabs(up) * height);
     };
-    constexpr float kFewest = 1.0f / kLargestTexel;
-    return {1.0f / std::max(texels(e.uv.a, e.uv.d), kFewest),
-            1.0f / std::max(texels(e.uv.b, e.uv.e), kFewest)};
+    constexpr float kMinTexels = 1.0f / kLargestTexel;
+    return {1.0f / std::max(texels(e.uv.a, e.uv.d), kMinTexels),
+            1.0f / std::max(texels(e.uv.b, e.uv.e), kMinTexels)};
   }
   for (const uint32_t operand : {e.first, e.second, e.amount}) {
     const auto its = finestTexel(operand);

@@ -66,6 +66,8 @@ Texture decodeColours(const fs::path& file, const std::string& bytes, bool srgb)
   t.srgb = srgb;
   t.rgba = std::move(pixels.values);
   t.damage = std::move(pixels.damage);
+  if (pixels.rounded)
+    t.notes.push_back("16 bits a channel are rounded to 8; fine heights need an EXR or PFM");
   return t;
 }
 

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "core/files.h"
+#include "core/number_text.h"
 #include "core/read_file.h"
 
 namespace bnvpl {
@@ -11,7 +12,7 @@ namespace {
 
 std::string keyOf(const TextureUse& use) {
   const auto pair = [](const std::array<float, 2>& v) {
-    return std::to_string(v[0]) + "," + std::to_string(v[1]);
+    return shortestText(v[0]) + "," + shortestText(v[1]);
   };
   return use.file.string() + (use.srgb ? "|s" : "|l") + (use.mask ? "m" : "") + "|" +
          pair(use.scale) + "," + pair(use.offset);

@@ -2,6 +2,7 @@
 """Tests the cost model of the stages: its fit, its shards, its scenes and what is stored of it."""
 
 import json
+import re
 import sys
 import tempfile
 import unittest
@@ -9,9 +10,12 @@ from pathlib import Path
 
 SOURCE = Path(__file__).resolve().parents[2]
 sys.dont_write_bytecode = True
-sys.path[:0] = [str(SOURCE / "pipelines"), str(SOURCE / "eval/scaling")]
+sys.path[:0] = [
+    str(SOURCE / folder) for folder in ("pipelines", "pipelines/slurm", "eval/scaling")
+]
 import cost  # noqa: E402
 import fit  # noqa: E402
+import needs  # noqa: E402
 import scenes  # noqa: E402
 
 
@@ -59,6 +63,41 @@ class ModelTest(unittest.TestCase):
                 (model.predict(stage, "cpu_s", whole) - setup) / 100,
                 places=6,
             )
+
+    def test_pairs_are_those_of_the_tools_steps(self) -> None:
+        source = (SOURCE / "tools/eliminate/elimination/elimination.cpp").read_text()
+        found = re.search(r"kMaxPerVpl = (\d+), kStepFactor = (\d+), kMaxWork = 0x1p(\d+);", source)
+        assert found
+        each, factor, work = (int(number) for number in found.groups())
+        ours = cost.MAX_PER_VPL, cost.STEP_FACTOR, cost.MAX_WORK
+        self.assertEqual(ours, (each, factor, 2**work))
+
+    def test_jobs_get_the_memory_that_vpl_render_asks_for(self) -> None:
+        source = (SOURCE / "tools/render/outputs.cpp").read_text()
+        sums, fireflies = (
+            int(re.search(pattern, source)[1])  # type: ignore[index]
+            for pattern in (r"double bytes = (\d+);", r"Fireflies\(options\)\) bytes \+= (\d+);")
+        )
+        model = cost.load()
+        for pixels in 1920 * 1080, 3840 * 2160:
+            counts = cost.Counts(1e5, 1e6, 1e5, 1e7, pixels, 16)
+            given = needs.memory_MiB(model.predict("render", "memory_MiB", counts))
+            self.assertGreater(given, (sums + fireflies) * pixels / 2**20 + 64)
+
+    def test_films_of_views(self) -> None:
+        with tempfile.TemporaryDirectory() as folder:
+            view = Path(folder) / "view.toml"
+            for text, film in (
+                ("[camera]\n", "640x480"),
+                ("[film]\nwidth = 100\n", "100x480"),
+                ("[film]\nwidth = 100\nheight = 50\n", "100x50"),
+            ):
+                view.write_text(text)
+                self.assertEqual(needs.film_of(str(view), "640x480"), film)
+            view.write_text("[film\n")
+            with self.assertRaises(SystemExit) as refused:
+                needs.film_of(str(view), "640x480")
+            self.assertRegex(str(refused.exception), f"{view}: .*; supply a TOML file")
 
     def test_scenes_are_cut_and_not_changed(self) -> None:
         def area(obj: Path) -> float:

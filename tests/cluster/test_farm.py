@@ -275,6 +275,13 @@ class Command(unittest.TestCase):
         ):
             with self.assertRaises(SystemExit), contextlib.redirect_stderr(io.StringIO()):
                 farm.arguments([*FILM, *words])
+        for words, problem in (
+            (["--vpls", "100x"], "--vpls: '100x' is no count"),
+            (["--spp", ""], "--spp: '' is no count"),
+        ):
+            with self.assertRaises(SystemExit) as refused:
+                printed("--nodes", "1", *words)
+            self.assertIn(problem, str(refused.exception))
 
 
 if __name__ == "__main__":

@@ -10,9 +10,9 @@
 namespace bnvpl {
 namespace {
 
-TEST(Parallel, EveryIndexOnce) {
+TEST(Parallel, ThreadsVisitEveryIndexOnce) {
   std::vector<int> visits(10007);
-  parallelFor(visits.size(), 64, [&](size_t i) { ++visits[i]; });
+  test::withThreads(7, [&] { parallelFor(visits.size(), 64, [&](size_t i) { ++visits[i]; }); });
   for (const int n : visits) ASSERT_EQ(n, 1);
   parallelFor(0, 1, [&](size_t) { FAIL(); });
 }

@@ -11,6 +11,7 @@
 #include "core/cdf.h"
 #include "core/random.h"
 #include "core/random_streams.h"
+#include "core/winsorized_mean.h"
 
 namespace bnvpl {
 namespace {
@@ -21,6 +22,18 @@ double overSphere(const std::function<double(double)>& f) {
   double sum = 0.0;
   for (int i = 0; i < kSteps; ++i) sum += f(-1.0 + 2.0 * (i + 0.5) / kSteps);
   return sum * 2.0 / kSteps * 2.0 * double{kPi};
+}
+
+TEST(WinsorizedMean, AFewHugeValuesDecideNothing) {
+  EXPECT_EQ(winsorizedMean({}), 0.0);
+  EXPECT_EQ(winsorizedMean({1, 2, 3, 6}), 3.0);  // the percentile of a few values is the largest
+  std::vector<float> values(1000, 1.0f);
+  for (size_t i = 0; i < 300; ++i) values[i] = 2.0f;
+  EXPECT_NEAR(winsorizedMean(values), 1.3, 1e-6);
+  for (size_t i = 0; i < 9; ++i) values[i] = 1e30f;
+  EXPECT_NEAR(winsorizedMean(values), 1.3, 1e-6);
+  values[500] = NAN, values[501] = INFINITY;
+  EXPECT_NEAR(winsorizedMean(values), 1.3, 1e-3);
 }
 
 using Warp = std::function<Vec3(float, float)>;

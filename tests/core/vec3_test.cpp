@@ -53,6 +53,18 @@ TEST(Vec3, FiniteMeansEveryElement) {
   EXPECT_FALSE(isFinite({INFINITY, 0, 0}));
 }
 
+TEST(Bounds, RaysThatMeetTheBox) {
+  Bounds box;
+  box.extend({0, 0, 0}), box.extend({1, 1, 1});
+  EXPECT_TRUE(box.isHitBy({0.5f, 0.5f, 0.5f}, {0, 0, 1}));
+  EXPECT_TRUE(box.isHitBy({0.5f, 0.5f, -1}, {0, 0, 1}));
+  EXPECT_FALSE(box.isHitBy({0.5f, 0.5f, -1}, {0, 0, -1}));
+  EXPECT_FALSE(box.isHitBy({1.5f, 0.5f, -1}, {0, 0, 1}));
+  EXPECT_TRUE(box.isHitBy({2, 2, 2}, {-1, -1, -1}));
+  EXPECT_FALSE(box.isHitBy({2, 2, 2}, {-1, -1, -0.2f}));
+  EXPECT_TRUE(box.isHitBy({0.5f, 1, 0.5f}, {0, 1, 0}));  // its faces belong to it
+}
+
 TEST(Frame, IsOrthonormalAndRightHandedEverywhere) {
   for (const Vec3 n : manyDirections()) {
     const Frame b(n);

@@ -5,10 +5,12 @@
 #include <array>
 #include <atomic>
 
+#include "tests/support/threads.h"
+
 namespace bnvpl {
 namespace {
 
-TEST(WorkControls, EveryUnitRunsOnceThoughEveryRoundPauses) {
+TEST(WorkControls, ThreadsRunEveryUnitOnceThoughEveryRoundPauses) {
   std::vector<uint8_t> done(1000);
   done[3] = done[999] = 1;
   std::vector<std::atomic<int>> ran(done.size());
@@ -16,8 +18,10 @@ TEST(WorkControls, EveryUnitRunsOnceThoughEveryRoundPauses) {
   WorkControls controls;
   controls.pause = [] { return true; };
   controls.save = [&](const std::string&) { ++saves; };
-  forUnitsLeft(
-      done, controls, [&](size_t i) { ++ran[i]; }, [] { return std::string(); });
+  test::withThreads(7, [&] {
+    forUnitsLeft(
+        done, controls, [&](size_t i) { ++ran[i]; }, [] { return std::string(); });
+  });
   for (size_t i = 0; i < done.size(); ++i) {
     EXPECT_EQ(done[i], 1);
     EXPECT_EQ(ran[i], i == 3 || i == 999 ? 0 : 1) << i;

@@ -13,7 +13,8 @@ namespace {
 class Deposits {
  public:
   explicit Deposits(uint64_t photons)
-      : deposits(EstimateInputs{vpls_, world_.accel, world_.lights, {}, {}}, 1.7f, photons) {
+      : deposits(EstimateInputs{vpls_, world_.accel, world_.lights, {}, {}}, coverage_, 1.7f,
+                 photons) {
     sums_.vpl.resize(vpls_.size());
     sums_.points = EmitPoints(vpls_, 4, 1);
   }
@@ -31,6 +32,7 @@ class Deposits {
  private:
   const World world_{"cornell/scene.toml"};
   const VplTable vpls_ = keptVpls(world_, {{"count", "10"}}, {{"count", "100"}});
+  const Coverage coverage_ = coverageOf(vpls_, world_.accel, 1.7f);
   PhotonSums sums_;
   size_t hits_ = 0;
 

@@ -13,7 +13,7 @@ namespace {
 
 // What stands at the name is replaced and removed at any moment. A run finds a state that was saved
 // whole, or none.
-TEST(SharedCheckpoint, MayBeReplacedOrRemovedAsItIsOpened) {
+TEST(SharedCheckpoint, ThreadsMayReplaceOrRemoveItAsItIsOpened) {
   const fs::path folder = fs::temp_directory_path() / ("bnvpl-shared-" + std::to_string(getpid()));
   fs::create_directories(folder);
   CheckpointOptions options;
@@ -27,11 +27,13 @@ TEST(SharedCheckpoint, MayBeReplacedOrRemovedAsItIsOpened) {
     bytes->assign(std::istreambuf_iterator<char>(in), {});
   }
   std::atomic<bool> done{false};
+  std::atomic<int> replaced{0};
   std::thread others([&] {
     for (int i = 0; !done; ++i) {
       std::ofstream(folder / "next", std::ios::binary) << (i % 2 == 0 ? small : large);
       fs::rename(folder / "next", options.file);
       if (i % 3 == 0) fs::remove(options.file);
+      ++replaced;
     }
   });
   int resumed = 0;
@@ -48,6 +50,7 @@ TEST(SharedCheckpoint, MayBeReplacedOrRemovedAsItIsOpened) {
   done = true;
   others.join();
   EXPECT_GT(resumed, 0);
+  EXPECT_GT(replaced, 100);
   fs::remove_all(folder);
 }
 

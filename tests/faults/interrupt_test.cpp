@@ -1,5 +1,5 @@
 // Signals that ask a tool to stop, either at once or after a loop has saved its work.
-#include "tools/common/run/interrupt.h"
+#include "tools/common/process/interrupt.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

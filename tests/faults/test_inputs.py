@@ -120,6 +120,7 @@ class ChangingInputs(Workbench):
         """Each read of an input fails in turn, and with it all later ones."""
         for command in COMMANDS:
             self.right(command)
+            failed = 0
             for at in range(1, 1000, 1 if FULL else 5):
                 self.put_old(command)
                 result = self.run_command(command, {"call": "read", "at": at, "errno": 5})
@@ -129,6 +130,10 @@ class ChangingInputs(Workbench):
                     break
                 self.assertEqual(result.code, INPUT, what)
                 self.assert_all(command, "old", what)
+                failed += 1
+            else:
+                self.fail(f"{command.name} ended with no number of failing reads")
+            self.assertGreater(failed, 0, command.name)
 
 
 if __name__ == "__main__":

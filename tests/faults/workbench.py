@@ -175,7 +175,7 @@ class Workbench(unittest.TestCase):
             ".vpl": b"\x89VPL\r\n\x1a\n",
             ".exr": b"\x76\x2f\x31\x01\x02\0\0\0bnvpl.hash\0",
             ".png": b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\1\0\0\0\1\x08\2\0\0\0\0\0\0\0"
-            b"\0\0\0\0IDAT\x78\x5e",
+            b"\0\0\0\x13tEXtSoftware\0bnvpl 0.1\0\0\0\0IDAT",
             ".shard": b"\x89VPLSHD\n",
             ".csv": b"position_x,position_y,position_z,normal_x,normal_y,normal_z,"
             b"albedo_r,albedo_g,albedo_b,id\n",

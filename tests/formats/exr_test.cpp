@@ -226,16 +226,19 @@ TEST_F(Exr, AttributesThatHideTheNextAreRefused) {
       {"a channel list without an end", attribute("channels", "chlist", "") +
                                             std::string(255, 'c') + std::string(18, '\0') +
                                             hidden}};
-  for (const auto& [name, inserted] : cases) {
-    std::string damaged = bytes;
-    damaged.insert(opening, inserted);
-    writeAll(at("b.exr"), damaged);
-    try {
-      readExr(at("b.exr"));
-      ADD_FAILURE() << name;
-    } catch (const InputError& e) {
-      EXPECT_NE(std::string(e.what()).find("claims"), std::string::npos)
-          << name << ": " << e.what();
+  const std::string far = attribute("long", "string", std::string(300'000, ' '));
+  for (const std::string& before : {std::string(), far}) {
+    for (const auto& [name, inserted] : cases) {
+      std::string damaged = bytes;
+      damaged.insert(opening, before + inserted);
+      writeAll(at("b.exr"), damaged);
+      try {
+        readExr(at("b.exr"));
+        ADD_FAILURE() << name;
+      } catch (const InputError& e) {
+        EXPECT_NE(std::string(e.what()).find("claims"), std::string::npos)
+            << name << ": " << e.what();
+      }
     }
   }
   std::string manifest = bytes;

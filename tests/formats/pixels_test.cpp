@@ -59,10 +59,10 @@ TEST(PngPixels, EveryKindIsRead) {
   const std::string clear = chunk("tRNS", {0, 1});
   EXPECT_EQ(rgba(png(2, 1, 2, 0, "", {0, 0x10})), (Values{0, 0, 0, 255, 85, 85, 85, 255}));
   EXPECT_EQ(rgba(png(2, 1, 1, 0, clear, {0, 0x40})), (Values{0, 0, 0, 255, 255, 255, 255, 0}));
-  EXPECT_EQ(rgba(png(1, 1, 16, 0, "", {0, 7, char(200)})), (Values{7, 7, 7, 255}));
+  EXPECT_EQ(rgba(png(1, 1, 16, 0, "", {0, 7, char(200)})), (Values{8, 8, 8, 255}));
   EXPECT_EQ(rgba(png(1, 1, 8, 2, "", {0, 1, 2, 3})), (Values{1, 2, 3, 255}));
   EXPECT_EQ(rgba(png(1, 1, 8, 4, "", {0, 9, 5})), (Values{9, 9, 9, 5}));
-  EXPECT_EQ(rgba(png(1, 1, 16, 6, "", {0, 1, -1, 2, -1, 3, -1, 4, -1})), (Values{1, 2, 3, 4}));
+  EXPECT_EQ(rgba(png(1, 1, 16, 6, "", {0, 1, -1, 2, -1, 3, -1, 4, -1})), (Values{2, 3, 4, 5}));
   const std::string palette = chunk("PLTE", "abcdef"), alpha = chunk("tRNS", "\x09");
   EXPECT_EQ(rgba(png(2, 1, 1, 3, palette + alpha, {0, 0x40})),
             (Values{'a', 'b', 'c', 9, 'd', 'e', 'f', 255}));

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numeric>
 
-#include "images/flip_colour.h"
-#include "images/flip_filter.h"
-#include "images/hdr_flip.h"
+#include "images/flip/flip_colour.h"
+#include "images/flip/flip_filter.h"
+#include "images/flip/hdr_flip.h"
 #include "tests/support/flat_image.h"
 #include "tests/support/threads.h"
 

@@ -2,7 +2,7 @@
 #include "scene/load_scene.h"
 #include "tests/inspect/run_inspect.h"
 #include "tests/inspect/tiny_scene.h"
-#include "tools/common/run/exit_codes.h"
+#include "tools/common/process/exit_codes.h"
 
 namespace bnvpl {
 namespace {

@@ -2,7 +2,7 @@
 #include "formats/image/png_io.h"
 #include "tests/inspect/foreign_exr.h"
 #include "tests/inspect/run_inspect.h"
-#include "tools/common/run/exit_codes.h"
+#include "tools/common/process/exit_codes.h"
 
 namespace bnvpl {
 namespace {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/flat_image.h"
-#include "tools/common/run/exit_codes.h"
+#include "tools/common/process/exit_codes.h"
 
 namespace bnvpl {
 namespace {

@@ -1,7 +1,7 @@
 #include "tools/inspect/info/info.h"
 
 #include "tests/inspect/inspect_files.h"
-#include "tools/common/stage/build_id.h"
+#include "tools/common/run/build_id.h"
 #include "tools/inspect/info/spacing.h"
 
 namespace bnvpl {

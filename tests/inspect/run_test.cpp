@@ -2,7 +2,7 @@
 #include <sys/stat.h>
 
 #include "tests/inspect/run_inspect.h"
-#include "tools/common/run/exit_codes.h"
+#include "tools/common/process/exit_codes.h"
 #include "tools/inspect/run/run_report.h"
 #include "tools/inspect/run/run_timeline.h"
 

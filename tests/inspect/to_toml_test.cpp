@@ -3,7 +3,7 @@
 #include "formats/image/png_io.h"
 #include "scene/choose_view.h"
 #include "scene/load_scene.h"
-#include "scene/material_inputs.h"
+#include "scene/visit_material.h"
 #include "tests/inspect/run_inspect.h"
 #include "tests/inspect/tiny_scene.h"
 #include "tools/inspect/scene/scene_difference.h"

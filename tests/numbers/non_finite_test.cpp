@@ -2,7 +2,7 @@
 #include "formats/image/exr_io.h"
 #include "tests/numbers/room.h"
 #include "tests/transport/plain_scene.h"
-#include "transport/photon_walk.h"
+#include "transport/photons/photon_walk.h"
 
 namespace bnvpl::test {
 namespace {
@@ -47,7 +47,7 @@ TEST(Lobes, WithoutStrengthAreIgnored) {
   const SurfacePoint at = pointSeenFrom({0, 0, 1});
   EXPECT_EQ(Bsdf(scene, at).specularProbability(), 0.0f);
   const Scene dark = sceneOf(lambert(Vec3(1e-30f)));
-  EXPECT_EQ(Bsdf(dark, at).reflectance(), 0.0f);
+  EXPECT_EQ(Bsdf(dark, at).survivalProbability(), 0.0f);
 }
 
 // With 16,384 rows or more, the cosines that bound the rows at the poles are the same float.

@@ -20,6 +20,12 @@ class RoomTest : public SceneFiles {
  protected:
   // A room open towards +z, where sky and sun come in; the camera stands in the opening.
   Scene room(const Placement& p, const std::string& moreFaces = "") const {
+    writeRoom(p, moreFaces);
+    return load(tomlOf(p));
+  }
+
+ private:
+  void writeRoom(const Placement& p, const std::string& moreFaces) const {
     write("room.mtl",
           "newmtl white\nKd 0.7 0.7 0.7\nnewmtl red\nKd 0.6 0.1 0.1\n"
           "newmtl gloss\nKd 0.3 0.3 0.3\nKs 0.3 0.3 0.3\nNs 15\nillum 2\n"
@@ -60,7 +66,9 @@ class RoomTest : public SceneFiles {
     box("glass", {0.4, 0.1, -0.8}, {0.9, 0.6, -0.3});
     obj << moreFaces;
     write("room.obj", obj.str());
+  }
 
+  static std::string tomlOf(const Placement& p) {
     std::ostringstream toml;
     toml << std::scientific;
     toml.precision(16);
@@ -84,7 +92,7 @@ class RoomTest : public SceneFiles {
          << "[[light]]\ntype = \"environment\"\nradiance = [0.4, 0.5, 0.8]\n"
          << "[[light]]\ntype = \"directional\"\ndirection = [0.3, -0.5, -1]\n"
             "irradiance = [3.0, 2.5, 2.0]\nangular_diameter_deg = 2\n";
-    return load(toml.str());
+    return toml.str();
   }
 };
 

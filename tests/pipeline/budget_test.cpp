@@ -3,7 +3,7 @@
 
 #include "tests/pipeline/tool_runner.h"
 #include "tests/support/sanitizers.h"
-#include "tools/common/run/exit_codes.h"
+#include "tools/common/process/exit_codes.h"
 
 namespace bnvpl {
 namespace {
@@ -15,13 +15,8 @@ class BudgetRun : public PipelineTest {
   }
   nlohmann::json stats() const { return nlohmann::json::parse(readAll(at("s.json"))); }
   // Interrupts a run by `budget`, which does not end by itself, so that the checkpoint c remains.
-  void stop(const std::string& budget) const {
-    for (const char* seconds : {"2", "6", "18"}) {  // a busy machine may take long to begin
-      if (fs::exists(at("c"))) break;
-      shell(std::string("timeout --foreground -s INT ") + seconds + " '" BNVPL_BIN "/vpl-render' " +
-            paths(budget));
-    }
-    ASSERT_TRUE(fs::exists(at("c")));
+  void stop(const std::string& budget, double seconds = 0.5) const {
+    interrupt("vpl-render", paths(budget), "c", seconds);
   }
   std::string passesDone() const { return std::to_string(stats()["passes"].get<uint64_t>()); }
 };
@@ -74,7 +69,7 @@ TEST_F(BudgetRun, ATimeIsKeptAndItsImageRepeated) {
 TEST_F(BudgetRun, ALargeFilmHasPassesThatFitIntoTheTime) {
   if (kSanitized) GTEST_SKIP() << "sanitizers take several times as long";
   const std::string film =
-      scene_ + " --integrator path --size 1024x768 --stats " + path("s.json") + " -o ";
+      scene_ + " --integrator path --threads 2 --size 1024x768 --stats " + path("s.json") + " -o ";
   succeed("vpl-render", film + path("a.exr") + " --time 3s");
   EXPECT_LT(stats()["time_s"].get<double>(), 6.0);
   EXPECT_GE(stats()["passes"].get<int>(), 2);
@@ -114,7 +109,7 @@ TEST_F(BudgetRun, ThePreviewIsThereBeforeTheImage) {
 TEST_F(BudgetRun, ACheckpointKeepsTheTimeSpentAndMayGetAnother) {
   const std::string work =
       " --quiet --checkpoint " + path("c") + " -o " + path("a.exr") + " --stats " + path("s.json");
-  stop("--time 1h" + work);
+  stop("--time 1h" + work, 3);
   fail("vpl-render", paths("--time 1h --seed 2" + work), kExitInput, {"seed was 1 and is now 2"});
   succeed("vpl-render", paths("--time 1s" + work));  // already spent: the current pass ends
   EXPECT_GT(stats()["passes_time_s"].get<double>(), 1.0);

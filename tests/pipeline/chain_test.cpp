@@ -1,6 +1,6 @@
 // vpl-inspect check --deep on files that the stages wrote.
 #include "tests/pipeline/tool_runner.h"
-#include "tools/common/run/exit_codes.h"
+#include "tools/common/process/exit_codes.h"
 
 namespace bnvpl {
 namespace {

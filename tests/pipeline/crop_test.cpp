@@ -1,7 +1,7 @@
 // --crop: parts of the film that assemble into the whole image.
 #include "formats/image/exr_io.h"
 #include "tests/pipeline/tool_runner.h"
-#include "tools/common/run/exit_codes.h"
+#include "tools/common/process/exit_codes.h"
 
 namespace bnvpl {
 namespace {

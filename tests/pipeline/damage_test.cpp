@@ -1,6 +1,6 @@
 // Missing, foreign and damaged input, and output that cannot be written.
 #include "tests/pipeline/tool_runner.h"
-#include "tools/common/run/exit_codes.h"
+#include "tools/common/process/exit_codes.h"
 
 namespace bnvpl {
 namespace {

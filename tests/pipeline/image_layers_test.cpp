@@ -8,7 +8,7 @@
 #include "core/vec3.h"
 #include "formats/image/exr_io.h"
 #include "tests/pipeline/tool_runner.h"
-#include "tools/common/run/exit_codes.h"
+#include "tools/common/process/exit_codes.h"
 #include "tools/common/run/run_tool.h"
 
 namespace bnvpl {

@@ -1,7 +1,7 @@
 // vpl-inspect on files that the stages wrote: check --scene, and --stats of commands that print.
 #include "tests/pipeline/tool_runner.h"
 #include "tools/common/files/json_text.h"
-#include "tools/common/run/exit_codes.h"
+#include "tools/common/process/exit_codes.h"
 
 namespace bnvpl {
 namespace {

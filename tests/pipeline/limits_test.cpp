@@ -1,6 +1,6 @@
 // The sides of a film have one limit, wherever they are given.
 #include "tests/pipeline/tool_runner.h"
-#include "tools/common/run/exit_codes.h"
+#include "tools/common/process/exit_codes.h"
 
 namespace bnvpl {
 namespace {

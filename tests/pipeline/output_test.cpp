@@ -5,7 +5,7 @@
 #include "formats/image/exr_io.h"
 #include "tests/pipeline/tool_runner.h"
 #include "tools/common/files/json_text.h"
-#include "tools/common/run/exit_codes.h"
+#include "tools/common/process/exit_codes.h"
 
 namespace bnvpl {
 namespace {

@@ -1,6 +1,6 @@
 // --processor any gives the same bytes on all processors; tests/bytes/processors.py emulates some.
 #include "tests/pipeline/tool_runner.h"
-#include "tools/common/run/exit_codes.h"
+#include "tools/common/process/exit_codes.h"
 
 namespace bnvpl {
 namespace {
@@ -48,8 +48,7 @@ TEST_F(ProcessorRun, AnyIsAnotherRunForACheckpoint) {
   makeStages(scene_);
   const std::string estimate = scene_ + " " + path("vpls.vpl") + " -o " + path("x.vpl") +
                                " --quiet --photons 1G --checkpoint " + path("c");
-  shell("timeout --foreground -s INT 0.5 '" BNVPL_BIN "/vpl-estimate' " + estimate);
-  ASSERT_TRUE(fs::exists(at("c")));
+  interrupt("vpl-estimate", estimate, "c");
   fail("vpl-estimate", estimate + kAny.substr(8), kExitInput, {"another run", "is now \"any\""});
 }
 

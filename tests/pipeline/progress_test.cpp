@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "tests/pipeline/tool_runner.h"
-#include "tools/common/run/exit_codes.h"
+#include "tools/common/process/exit_codes.h"
 #include "tools/common/run/progress_meter.h"
 
 namespace bnvpl {
@@ -137,7 +137,7 @@ TEST_F(ProgressOfTools, IsErasedFromATerminalBeforeAnythingElseIsPrinted) {
        scene_ + " " + path("vpls.vpl") + " --photons 1M --irradiance-error 0 -o " + path("l.vpl")},
       {"vpl-render", scene_ + " " + path("lit.vpl") + " --spp 64 -o " + path("i.exr")}};
   for (const auto& [name, arguments] : lines) {
-    write("run.sh", "stty cols 60; '" BNVPL_BIN "/" + name + "' " + arguments + "\n");
+    write("run.sh", "stty cols 60; '" BNVPL_BIN "/" + name + "' --threads 2 " + arguments + "\n");
     const Outcome r = shell("script -qec 'sh " + at("run.sh").string() + "' /dev/null");
     EXPECT_EQ(r.code, kExitOk) << r.out;
     EXPECT_TRUE(contains(r.out, " of ")) << name << " was too fast to show progress: " << r.out;

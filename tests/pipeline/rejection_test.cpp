@@ -1,7 +1,7 @@
 // VPLs from the lights and view-dependent rejection: no vpl-estimate, two lit files.
 #include "formats/vpl/vpl_io.h"
 #include "tests/pipeline/tool_runner.h"
-#include "tools/common/run/exit_codes.h"
+#include "tools/common/process/exit_codes.h"
 
 namespace bnvpl {
 namespace {

@@ -259,7 +259,7 @@ TEST_F(Rerun, QualitiesAreThoseOfOneFile) {
     if (std::regex_match(line, m, std::regex(R"((\w+)\.(\w+)\s*:=\s*(.*))")))
       presets[m[2]][m[1]] = m[3];
   }
-  ASSERT_EQ(presets.size(), 3u);
+  ASSERT_EQ(presets.size(), 4u);
   for (auto& [quality, of] : presets) {
     const Outcome make =
         shell("make -n -f pipelines/Makefile SCENE=" + path("veach-door/scene.toml") +

@@ -4,7 +4,7 @@
 #include "formats/image/exr_io.h"
 #include "formats/shard/checkpoint.h"
 #include "tests/pipeline/tool_runner.h"
-#include "tools/common/run/exit_codes.h"
+#include "tools/common/process/exit_codes.h"
 
 namespace bnvpl {
 namespace {
@@ -87,9 +87,7 @@ TEST_F(ResumeRun, CheckpointsOfOtherRunsAndDamagedOnesAreRefused) {
   makeStages(scene_);
   const std::string estimate =
       scene_ + " " + path("vpls.vpl") + " -o " + path("x.vpl") + " --checkpoint " + path("c");
-  shell("timeout --foreground -s INT 0.5 '" BNVPL_BIN "/vpl-estimate' " + estimate +
-        " --photons 1G --quiet");
-  ASSERT_TRUE(fs::exists(at("c")));
+  interrupt("vpl-estimate", estimate + " --photons 1G --quiet", "c");
   const std::string bytes = readAll(at("c"));
   fail("vpl-estimate", estimate + " --photons 2G", kExitInput,
        {"/c:", "another run", "photons was 1000000000 and is now 2000000000"});
@@ -118,9 +116,8 @@ TEST_F(ResumeRun, UselessCheckpointsAreReplacedWhereThatIsAsked) {
   const std::string estimate = scene_ + " " + path("vpls.vpl") + " --photons ",
                     replaced = " --checkpoint-replace --checkpoint " + path("c");
   succeed("vpl-estimate", estimate + "20k -o " + path("a.vpl"));
-  shell("timeout --foreground -s INT 0.5 '" BNVPL_BIN "/vpl-estimate' " + estimate + "1G -o " +
-        path("b.vpl") + " --quiet --checkpoint " + path("c"));
-  ASSERT_TRUE(fs::exists(at("c")));
+  interrupt("vpl-estimate",
+            estimate + "1G -o " + path("b.vpl") + " --quiet --checkpoint " + path("c"), "c");
   const std::string bytes = readAll(at("c"));
   for (const std::string& useless : {bytes, bytes.substr(0, bytes.size() - 1)}) {
     write("c", useless);
@@ -139,8 +136,8 @@ TEST_F(ResumeRun, AnotherProcessorIsAnotherRun) {
   makeStages(scene_);
   const std::string estimate = scene_ + " " + path("vpls.vpl") + " -o " + path("x.vpl") +
                                " --photons 1G --checkpoint " + path("c");
-  shell("timeout --foreground -s INT 0.5 '" BNVPL_BIN "/vpl-estimate' " + estimate + " --quiet");
-  ASSERT_TRUE(fs::exists(at("c")));
+  interrupt("vpl-estimate", estimate + " --quiet", "c");
+  if (HasFatalFailure()) return;
   CheckpointFile saved = *findCheckpoint(at("c"));
   const std::string key = "\"processor_id\":\"";
   const size_t id = saved.run.find(key);
@@ -154,8 +151,7 @@ TEST_F(ResumeRun, AnotherViewIsAnotherRun) {
   const std::string scene = copyVeachDoor();
   const std::string render =
       scene + " --integrator path --spp 1M -o " + path("x.exr") + " --checkpoint " + path("c");
-  shell("timeout --foreground -s INT 3 '" BNVPL_BIN "/vpl-render' " + render + " --quiet");
-  ASSERT_TRUE(fs::exists(at("c")));
+  interrupt("vpl-render", render + " --quiet", "c");
   std::string toml = readAll(at("veach-door/scene.toml"));
   toml.replace(toml.find("width = 48"), 10, "width = 32");
   write("veach-door/scene.toml", toml);

@@ -6,7 +6,7 @@
 
 #include "formats/shard/shard_file.h"
 #include "tests/pipeline/tool_runner.h"
-#include "tools/common/run/exit_codes.h"
+#include "tools/common/process/exit_codes.h"
 
 namespace bnvpl {
 namespace {
@@ -156,9 +156,7 @@ TEST_F(ShardRun, ACheckpointIsOfOneShard) {
   EXPECT_EQ(readAll(at("saved.shard")), readAll(at("1.shard")));
   const std::string endless = scene_ + " " + path("vpls.vpl") + " --photons 1G -o " +
                               path("x.shard") + " --checkpoint " + path("c");
-  shell("timeout --foreground -s INT 0.5 '" BNVPL_BIN "/vpl-estimate' " + endless +
-        " --shard 1/3 --quiet");
-  ASSERT_TRUE(fs::exists(at("c")));
+  interrupt("vpl-estimate", endless + " --shard 1/3 --quiet", "c");
   fail("vpl-estimate", endless + " --shard 2/3", kExitInput,
        {"another run", "shard was \"1/3\" and is now \"2/3\""});
 }
@@ -182,6 +180,16 @@ TEST_F(ShardRun, RangesAndMergesOfMergesGiveTheSameBytes) {
     succeed("vpl-merge", files + "-o " + path("merged.vpl"));
     EXPECT_EQ(readAll(at("merged.vpl")), readAll(at("whole.vpl"))) << parts;
   }
+}
+
+// A name without an extension is that of the product, which replaces no shard.
+TEST_F(ShardRun, AMergeWithoutAnExtensionReplacesNoShard) {
+  makeShards("vpl-place", scene_ + " -n 2k", 2);
+  fs::copy_file(at("1.shard"), at("other"));
+  const std::string both = path("1.shard") + " " + path("2.shard");
+  fail("vpl-merge", both + " -o " + path("other"), kExitOutput, {"name another file"});
+  EXPECT_EQ(readAll(at("other")), readAll(at("1.shard")));
+  for (int k = 0; k < 2; ++k) succeed("vpl-merge", both + " -o " + path("new"));
 }
 
 // The shards that the message names complete the set.

@@ -172,7 +172,7 @@ class Preview(unittest.TestCase):
         self.assertIn("no viewer was at [::1]:9;", out)
 
     def test_addresses(self) -> None:
-        for address in ("nohost.invalid:1", "localhost:0", "localhost:99999", "a:b", ":1", "[::1"):
+        for address in ("localhost:0", "localhost:99999", "a:b", ":1", "[::1"):
             command = [BIN / "vpl-render", SCENE, "-o", self.image, "--integrator", "path"]
             words = [str(word) for word in [*command, "--preview", address]]
             done = subprocess.run(words, text=True, capture_output=True, check=False)

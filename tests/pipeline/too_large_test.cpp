@@ -4,7 +4,7 @@
 #include "formats/vpl/vpl_layout.h"
 #include "tests/pipeline/tool_runner.h"
 #include "tests/support/sanitizers.h"
-#include "tools/common/run/exit_codes.h"
+#include "tools/common/process/exit_codes.h"
 
 namespace bnvpl {
 namespace {

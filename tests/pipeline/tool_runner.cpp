@@ -8,7 +8,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "tools/common/run/exit_codes.h"
+#include "tools/common/process/exit_codes.h"
 
 namespace bnvpl {
 
@@ -60,6 +60,16 @@ Outcome PipelineTest::shell(const std::string& command, const std::string& limit
 Outcome PipelineTest::tool(const std::string& name, const std::string& arguments,
                            const std::string& limits) const {
   return shell("'" BNVPL_BIN "/" + name + "' " + arguments, limits);
+}
+
+void PipelineTest::interrupt(const std::string& name, const std::string& arguments,
+                             const std::string& checkpoint, double seconds) const {
+  for (const double delay : {seconds, 4 * seconds, 12 * seconds, 36 * seconds}) {
+    if (fs::exists(at(checkpoint))) break;
+    shell("timeout --foreground -s INT " + std::to_string(delay) + " '" BNVPL_BIN "/" + name +
+          "' " + arguments);
+  }
+  ASSERT_TRUE(fs::exists(at(checkpoint)));
 }
 
 void PipelineTest::succeed(const std::string& name, const std::string& arguments) const {

@@ -41,6 +41,10 @@ class PipelineTest : public ::testing::Test {
   // and holds every part.
   void fail(const std::string& name, const std::string& arguments, int code,
             const std::vector<std::string>& parts = {}, const std::string& limits = "") const;
+  // Interrupts a run of the tool that would take very long, so that its checkpoint remains: after
+  // `seconds` or, as a busy machine may take long to begin, later.
+  void interrupt(const std::string& name, const std::string& arguments,
+                 const std::string& checkpoint, double seconds = 0.5) const;
 
   // Makes small candidates.vpl, vpls.vpl and lit.vpl of a scene (quoted) in the test's folder.
   void makeStages(const std::string& scene) const;

@@ -1,7 +1,7 @@
 // .vpl files between the executables: extra columns, other versions, and the maker of a file.
 #include "formats/vpl/vpl_io.h"
 #include "tests/pipeline/tool_runner.h"
-#include "tools/common/run/exit_codes.h"
+#include "tools/common/process/exit_codes.h"
 
 namespace bnvpl {
 namespace {
@@ -77,10 +77,10 @@ TEST_F(VplFiles, AnotherVersionIsRefusedWithItsCure) {
 
 TEST_F(VplFiles, ShardsAndCheckpointsAreNamed) {
   succeed("vpl-place", scene_ + " -n 300 --shard 1/2 --quiet -o " + path("c.shard"));
-  shell("timeout --foreground -s INT 1 '" BNVPL_BIN "/vpl-render' " + scene_ +
-        " --integrator path --spp 1M --threads 1 --checkpoint " + path("work") + " -o " +
-        path("x.exr"));
-  ASSERT_TRUE(fs::exists(at("work")));
+  interrupt("vpl-render",
+            scene_ + " --integrator path --spp 1M --threads 1 --checkpoint " + path("work") +
+                " -o " + path("x.exr"),
+            "work");
   fs::copy(at("work"), at("work.vpl"));
   for (const auto& [file, told] :
        {std::pair{"c.shard", "is a shard"}, std::pair{"work.vpl", "is a checkpoint"}}) {

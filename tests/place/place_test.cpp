@@ -6,17 +6,20 @@
 #include <map>
 
 #include "tests/support/pipeline.h"
+#include "tests/support/threads.h"
 
 namespace bnvpl::test {
 namespace {
 
 Given count(uint64_t vpls) { return {{"count", typed(vpls)}}; }
 
-TEST(Place, GivesExactlyTheCountInPathOrder) {
+TEST(Place, ThreadsGiveExactlyTheCountInPathOrder) {
   const World world("u-shape/scene.toml");
   // The runs take two and three waves of paths: one wave is joined while the next is traced.
-  const VplTable few = placeVpls(world, count(70000)).table;
-  const VplTable more = placeVpls(world, count(140000)).table;
+  const auto placed = [&](uint64_t vpls) {
+    return withThreads(7, [&] { return placeVpls(world, count(vpls)).table; });
+  };
+  const VplTable few = placed(70000), more = placed(140000);
   ASSERT_EQ(few.size(), 70000u);
   ASSERT_EQ(more.size(), 140000u);
   for (size_t i = 0; i < few.size(); ++i) {

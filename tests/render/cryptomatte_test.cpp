@@ -1,5 +1,5 @@
 // Hashes and ranks of Cryptomatte; tests/pipeline/image_layers_test.cpp reads images back.
-#include "tools/render/film/cryptomatte.h"
+#include "tools/render/film/features/cryptomatte.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 // What denoisers are told of surfaces, against known values of mirrors, metals, coats and glass.
-#include "tools/render/film/denoiser_features.h"
+#include "tools/render/film/features/denoiser_features.h"
 
 #include <gtest/gtest.h>
 
-#include "scene/scene_builder.h"
+#include "scene/builder/scene_builder.h"
 #include "tests/transport/plain_scene.h"
 
 namespace bnvpl {

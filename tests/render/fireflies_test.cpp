@@ -11,7 +11,7 @@
 #include "core/random.h"
 #include "tests/support/pipeline.h"
 #include "tests/support/threads.h"
-#include "tools/render/film/passes.h"
+#include "tools/render/film/passes/passes.h"
 #include "tools/render/film/tiles.h"
 
 namespace bnvpl {

@@ -76,7 +76,7 @@ TEST(GuidedEmission, CausticPhotonsAndRaysShareTheLight) {
     };
   };
   EXPECT_TRUE(sameExpectation(by("2048", "1"), by("0", "8"), {.seeds = 16}));
-  EXPECT_LT(noiseOf(by("2048", "1"), 2), 0.5 * noiseOf(by("0", "1"), 2));
+  EXPECT_LT(noiseOf(by("2048", "1"), 8, 1.0), 0.5 * noiseOf(by("0", "1"), 8, 1.0));
   const UsefulPhotons useful =
       renderVpls(world, lit, {{"spp", "1"}, {"caustic-photons", "2048"}}).caustics.useful;
   EXPECT_LT(useful.byPower, 5e-3);

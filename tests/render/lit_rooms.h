@@ -2,8 +2,8 @@
 #pragma once
 
 #include "core/random.h"
+#include "scene/builder/scene_builder.h"
 #include "scene/load_scene.h"
-#include "scene/scene_builder.h"
 
 namespace bnvpl::test {
 

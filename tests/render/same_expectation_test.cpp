@@ -294,21 +294,21 @@ TEST(SameExpectation, SampleAllocationAndPathReuse) {
     const World world(scene);
     const VplTable lit =
         litVpls(world, {{"count", "60"}}, {{"photons", "50k"}}, {{"count", "2000"}});
-    const auto with4spp = [&](const char* balance, const char* reuse) {
+    const auto with4spp = [&](const char* allocate, const char* reuse) {
       return vpls(world, lit,
                   {{"spp", "4"},
                    {"gather", "tilecuts"},
                    {"compensate", "near-field"},
                    {"caustic-photons", "0"},
-                   {"allocate", balance},
+                   {"allocate", allocate},
                    {"reuse", reuse}});
     };
     const Render plain = remembered(with4spp("off", "1"));
-    for (const char* balance : {"off", "on"}) {
+    for (const char* allocate : {"off", "on"}) {
       for (const char* reuse : {"1", "8"}) {
-        if (*reuse == '1' && std::string_view(balance) == "off") continue;
-        EXPECT_TRUE(sameExpectation(plain, with4spp(balance, reuse), {.seeds = 48}))
-            << &scene - scenes.data() << ", balance " << balance << ", reuse " << reuse;
+        if (*reuse == '1' && std::string_view(allocate) == "off") continue;
+        EXPECT_TRUE(sameExpectation(plain, with4spp(allocate, reuse), {.seeds = 48}))
+            << &scene - scenes.data() << ", allocate " << allocate << ", reuse " << reuse;
       }
     }
   }

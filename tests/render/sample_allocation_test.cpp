@@ -25,7 +25,9 @@ TEST(SampleAllocation, APixelDoesNotDecideOnItsOwnSamples) {
     p.add(Vec3(1.0f)), p.add(Vec3(1.2f));
     p.light = Vec3(1.1f);
   }
-  const auto samples = [&] { return samplesByParity(pixels, tile, 0.01, allocation, 1, 1000); };
+  const auto samples = [&] {
+    return samplesByParity(pixels, tile, 1.0f, 0.01, allocation, 1, 1000);
+  };
   const auto before = samples();
   pixels[27].add(Vec3(40.0f));  // a pixel of parity 0
   EXPECT_EQ(samples()[0], before[0]);
@@ -40,6 +42,55 @@ TEST(SampleAllocation, VarianceIsRelativeAndInBrightTilesHalfWayToAbsolute) {
   EXPECT_DOUBLE_EQ(allocation.relative(1.0, Vec3(2.0f)),
                    2.0 * allocation.relative(1.0, Vec3(4.0f)));
   EXPECT_EQ(SampleAllocation{}.relative(1.0, Vec3{}), 0.0);
+}
+
+struct Light {
+  float direct = 0.0f, indirect = 0.0f;
+};
+
+// The marginal cost that a pilot finds where light(sample index) is what each sample has, times its
+// weight of the pixel filter.
+double marginalCost(FilterKind filter, Only only, const std::function<Light(size_t index)>& light) {
+  World world("cornell/scene.toml");
+  world.scene.film = {64, 64};
+  return findAllocation(world.scene, PixelFilter(filter, 2.0f), 1, 16, only, {},
+                        [&](const TileSamples& tile) {
+                          for (size_t i = 0; i < tile.samples.size(); ++i) {
+                            CameraSample& s = tile.samples[i];
+                            const Light found = light(i);
+                            s.radiance.direct = Vec3(found.direct * s.weight);
+                            s.radiance.indirect = Vec3(found.indirect * s.weight);
+                          }
+                          return 1.0;
+                        })
+      .marginalCost;
+}
+
+TEST(SampleAllocation, SignsOfThePixelFilterAreNoNoise) {
+  const auto even = [](size_t) { return Light{1.0f}; };
+  EXPECT_EQ(marginalCost(FilterKind::Mitchell, Only::Everything, even), 0.0);
+  const auto noisy = [](size_t i) { return Light{i / 64 % 2 ? 1.2f : 1.0f}; };
+  const double box = marginalCost(FilterKind::Box, Only::Everything, noisy),
+               mitchell = marginalCost(FilterKind::Mitchell, Only::Everything, noisy);
+  EXPECT_GT(box, 0.0);
+  const double factor{PixelFilter(FilterKind::Mitchell, 2.0f).squaredWeight()};
+  EXPECT_GT(factor, 1.1);
+  EXPECT_NEAR(mitchell / box, factor, 0.05 * factor);
+}
+
+TEST(SampleAllocation, OnlyShownLightCounts) {
+  const auto noisyDirect = [](size_t i) { return Light{static_cast<float>(i / 64), 1.0f}; };
+  EXPECT_GT(marginalCost(FilterKind::Box, Only::Everything, noisyDirect), 0.0);
+  EXPECT_EQ(marginalCost(FilterKind::Box, Only::Indirect, noisyDirect), 0.0);
+}
+
+TEST(SampleAllocation, SamplesThatAreNoNumbersAreBlack) {
+  const auto broken = [](float light) {
+    return [=](size_t i) { return Light{i == 70 ? light : 1.0f}; };
+  };
+  const double black = marginalCost(FilterKind::Box, Only::Everything, broken(0.0f));
+  EXPECT_GT(black, 0.0);
+  EXPECT_EQ(marginalCost(FilterKind::Box, Only::Everything, broken(NAN)), black);
 }
 
 // Light comes through a door, and direct light from an emitter hidden from most of the film.

@@ -1,6 +1,6 @@
 // Alpha masks cut holes for every kind of ray.
 #include "tests/scene/scene_files.h"
-#include "transport/accelerator.h"
+#include "transport/accelerator/accelerator.h"
 
 namespace bnvpl {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "scene/scene_builder.h"
+#include "scene/builder/scene_builder.h"
 #include "tests/scene/scene_files.h"
 
 namespace bnvpl {

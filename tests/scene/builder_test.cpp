@@ -2,10 +2,10 @@
 #include <algorithm>
 
 #include "core/random.h"
-#include "scene/scene_builder.h"
+#include "scene/builder/scene_builder.h"
 #include "scene/scene_hash.h"
 #include "tests/scene/builder_fixture.h"
-#include "transport/accelerator.h"
+#include "transport/accelerator/accelerator.h"
 
 namespace bnvpl {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "scene/scene_builder.h"
+#include "scene/builder/scene_builder.h"
 
 namespace bnvpl {
 namespace {

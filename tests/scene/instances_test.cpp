@@ -6,9 +6,9 @@
 #include "core/random.h"
 #include "core/random_streams.h"
 #include "core/sampling.h"
-#include "scene/scene_builder.h"
-#include "transport/accelerator.h"
-#include "transport/lights.h"
+#include "scene/builder/scene_builder.h"
+#include "transport/accelerator/accelerator.h"
+#include "transport/lights/lights.h"
 
 namespace bnvpl {
 namespace {

@@ -1,6 +1,6 @@
 // `group` of [[light]]: which lights have which, and what is refused.
 #include "tests/scene/scene_files.h"
-#include "transport/lights.h"
+#include "transport/lights/lights.h"
 
 namespace bnvpl {
 namespace {

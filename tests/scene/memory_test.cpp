@@ -8,7 +8,7 @@
 
 #include "scene/load_scene.h"
 #include "tests/support/sanitizers.h"
-#include "transport/lights.h"
+#include "transport/lights/lights.h"
 
 namespace bnvpl {
 namespace {

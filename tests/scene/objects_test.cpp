@@ -1,5 +1,5 @@
 // The names of a file's objects, and the triangles and instances that they have in the scene.
-#include "scene/scene_builder.h"
+#include "scene/builder/scene_builder.h"
 #include "tests/scene/gltf/gltf_files.h"
 
 namespace bnvpl {

@@ -1,6 +1,6 @@
 // A scene.toml over files of other formats: their places, cameras, lights and materials.
+#include "scene/builder/scene_builder.h"
 #include "scene/choose_view.h"
-#include "scene/scene_builder.h"
 #include "tests/scene/gltf/gltf_files.h"
 
 namespace bnvpl {
@@ -65,7 +65,7 @@ TEST_F(Overlay, AFileThatIsIncludedIsTheSameScene) {
     EXPECT_EQ(over.contentHash, alone.contentHash) << name;
     EXPECT_EQ(over.film.width, alone.film.width) << name;
     EXPECT_EQ(over.camera.position, alone.camera.position) << name;
-    EXPECT_EQ(isMirrored(over.camera), isMirrored(alone.camera)) << name;
+    EXPECT_EQ(over.camera.isMirrored(), alone.camera.isMirrored()) << name;
     EXPECT_EQ(over.views.size(), alone.views.size()) << name;
     EXPECT_NE(load(mesh(name, "translate = [0, 1, 0]\n")).contentHash, alone.contentHash) << name;
   }
@@ -82,8 +82,8 @@ TEST_F(Overlay, ItsFilmAndCameraComeFirst) {
   const std::string camera = kFilmAndCamera.substr(kFilmAndCamera.find("[camera]"));
   const Scene pbrt = load(camera + mesh("room.pbrt"));
   EXPECT_EQ(pbrt.film.width, 20u) << "that of the file";
-  EXPECT_TRUE(isMirrored(pbrt.camera)) << "as the camera that it replaces";
-  EXPECT_FALSE(isMirrored(load(camera + "mirrored = false\n" + mesh("room.pbrt")).camera));
+  EXPECT_TRUE(pbrt.camera.isMirrored()) << "as the camera that it replaces";
+  EXPECT_FALSE(load(camera + "mirrored = false\n" + mesh("room.pbrt")).camera.isMirrored());
   write("sub/film.toml", "[film]\nwidth = 20\nheight = 10\n[[mesh]]\nfile = \"square.obj\"\n");
   EXPECT_EQ(load(camera + mesh("film.toml")).film.width, 20u) << "that of a file without camera";
   EXPECT_EQ(load(kFilmAndCamera + mesh("film.toml")).film.width, 8u);
@@ -116,7 +116,7 @@ TEST_F(Overlay, ALensIsScaledWithItsFile) {
   EXPECT_NE(loadError(mesh("lens.pbrt", "scale = 1e8\n")).find("lens"), std::string::npos);
 }
 
-// So that the picture stays the same. A height in texels has no scale.
+// The picture stays the same by this. A height in texels has no scale.
 TEST_F(Overlay, ABumpIsScaledWithItsFile) {
   write("sub/bumpy.toml",
         "[[texture]]\nname = \"t\"\ntype = \"image\"\nimage = \"dot.tga\"\n"
@@ -183,7 +183,7 @@ TEST_F(Overlay, CamerasAndLightsMoveWithTheirFile) {
   EXPECT_LT(length(s.views[0].camera.right - Vec3(0, 0, -1)), 1e-6f);
   EXPECT_LT(length(s.views[0].camera.up - Vec3(0, 1, 0)), 1e-6f);
   const Scene mirrored = load(mesh("room.glb", "scale = [-1, 1, 1]\n"));
-  EXPECT_TRUE(isMirrored(mirrored.camera));
+  EXPECT_TRUE(mirrored.camera.isMirrored());
 }
 
 TEST_F(Overlay, EnvironmentImagesTurnAboutY) {

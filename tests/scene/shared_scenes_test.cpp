@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "scene/load_scene.h"
-#include "transport/lights.h"
+#include "transport/lights/lights.h"
 
 namespace bnvpl {
 namespace {

@@ -4,7 +4,7 @@
 #include "core/random.h"
 #include "core/sampling.h"
 #include "tests/scene/gltf/gltf_files.h"
-#include "transport/lights.h"
+#include "transport/lights/lights.h"
 
 namespace bnvpl {
 namespace {

@@ -1,7 +1,7 @@
 #include "core/sampling.h"
 #include "scene/affine.h"
 #include "tests/scene/scene_files.h"
-#include "transport/accelerator.h"
+#include "transport/accelerator/accelerator.h"
 
 namespace bnvpl {
 namespace {

@@ -5,6 +5,7 @@ A folder includes only what stands before it in its list, itself, and what every
 
 from __future__ import annotations
 
+import graphlib
 import re
 import subprocess
 import sys
@@ -95,6 +96,22 @@ class Includes(unittest.TestCase):
                     inner = include.removeprefix("tools/render/")
                     self.assertIsNotNone(rank(inner, RENDER), f"{path} includes {include}")
 
+    def test_no_circle_of_folders(self) -> None:
+        """A folder may use the folders within it, and they what lies in it."""
+        folders: dict[str, set[str]] = {}
+        for path in sources():
+            if path.suffix == ".py" or "test" in str(path):
+                continue
+            own = str(path.parent)
+            for include in includes_of(path):
+                other = str(Path(include).parent)
+                if other != own and not other.startswith(own + "/"):
+                    folders.setdefault(own, set()).add(other)
+        try:
+            graphlib.TopologicalSorter(folders).prepare()
+        except graphlib.CycleError as error:
+            self.fail("folders include each other: " + " <- ".join(error.args[1]))
+
     def test_stages_do_not_include_each_other(self) -> None:
         for stage in STAGES:
             for path in sources(f"tools/{stage}/"):
@@ -106,16 +123,51 @@ class Includes(unittest.TestCase):
                         )
 
 
+def code_of(text: str) -> str:
+    """The text without what is in comments, strings and preprocessor lines; lines stay."""
+    pattern = (
+        r'//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])+\'|'
+        r"^[ ]*\#(?:\\\n|[^\n])*"
+    )
+
+    def blank(match: re.Match[str]) -> str:
+        digits = match.start() > 0 and text[match.start() - 1].isalnum() and match[0][0] == "'"
+        return match[0] if digits else re.sub(r"[^\n]", " ", match[0])
+
+    return re.sub(pattern, blank, text, flags=re.DOTALL | re.MULTILINE)
+
+
+def end_of_block(code: str, begin: int) -> int:
+    """Index of the brace that closes the one at `begin`."""
+    depth = 0
+    for i in range(begin, len(code)):
+        depth += {"{": 1, "}": -1}.get(code[i], 0)
+        if depth == 0:
+            return i
+    return len(code) - 1
+
+
 def functions_of(text: str) -> list[tuple[int, int]]:
-    """First line and length of each function of C++ that begins at the margin."""
-    found = []
-    start = None
-    for number, line in enumerate(text.splitlines(), 1):
-        if start is None and re.match(r"[A-Za-z_][^=]*\)[^;=]*\{$", line):
-            start = number
-        elif start is not None and line == "}":
-            found.append((start, number - start + 1))
-            start = None
+    """First line and length of each function of C++, also of members."""
+    code, found, head, i = code_of(text), [], 0, 0
+    while i < len(code):
+        if code[i] in ";}":
+            head = i + 1
+        elif code[i] == "{":
+            before = code[head:i]
+            if re.search(r"\b(namespace|class|struct|union|extern)\b[^()]*$", before):
+                head = i + 1
+            else:
+                end = end_of_block(code, i)
+                initialises = code[end + 1 :].lstrip()[:1] in (",", "{")  # before the body
+                if ")" in before and not initialises:
+                    first = head + len(before) - len(before.lstrip())
+                    line = code.count("\n", 0, first) + 1
+                    found.append((line, code.count("\n", first, end) + 1))
+                if not initialises:
+                    head = end + 1
+                i = end
+        i += 1
     return found
 
 
@@ -132,6 +184,23 @@ class Sizes(unittest.TestCase):
                 continue
             lines = len((ROOT / path).read_text().splitlines())
             self.assertLessEqual(lines, MAX_FILE_LINES, str(path))
+
+    def test_functions_are_found(self) -> None:
+        text = """namespace a {
+int f(int x = 3,
+      int y = 4) {
+  return '{' + 1'000;
+}
+struct S {
+  S() : x{1}, y(2) {
+    if (x) {
+    }
+  }
+  int x, y;
+};
+}  // namespace {
+"""
+        self.assertEqual(functions_of(text), [(2, 4), (7, 4)])
 
     def test_functions_are_short(self) -> None:
         for path in sources():

@@ -211,5 +211,14 @@ TEST(RegionGrid, NamesTheDiskOnThePointsOwnSurface) {
   EXPECT_EQ(RegionGrid().at({}, {0, 0, 1}), UINT32_MAX);
 }
 
+TEST(RegionGrid, CellsAreNotTakenForOthersFarAway) {
+  const std::vector<Vec3> point{{0, 0, 0}}, normal{{0, 0, 1}};
+  const std::vector<float> radius{0.001f};
+  const RegionGrid grid(point, normal, radius);
+  EXPECT_EQ(grid.at({0.0002f, 0.0002f, 0}, {0, 0, 1}), 0u);
+  for (int power = 0; power < 20; ++power)
+    EXPECT_EQ(grid.at({std::ldexp(1.0f, power), 0, 0}, {0, 0, 1}), UINT32_MAX) << power;
+}
+
 }  // namespace
 }  // namespace bnvpl

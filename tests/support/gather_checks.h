@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 
+#include "tests/support/mean_test.h"
 #include "tests/support/pipeline.h"
 #include "tests/support/threads.h"
 #include "tools/render/gather/gather.h"
@@ -77,24 +78,19 @@ inline void expectEnergyOfAll(const std::string& gather, double tolerance, uint6
   }
 }
 
-// The same for unbiased gathers: within three standard errors over the seeds, which are at most
+// The same for unbiased gathers: the mean over the seeds, whose standard error is at most
 // `maxError`. The room lit through a door, or both with `everyKind` false, have the default kind.
 inline void expectMeanOfAll(const std::string& gather, double maxError, const Given& options = {},
-                            bool everyKind = true) {
-  constexpr uint64_t kSeeds = 8;
+                            bool everyKind = true, uint64_t seeds = 8) {
   for (const GatherCase* c : gatherCases()) {
     for (const std::string_view name : everyKind ? kindsFor(*c) : kindsFor(*gatherCases().back())) {
       const Given light{{"light", std::string(name)}};
-      double sum = 0.0, squares = 0.0;
-      for (uint64_t seed = 1; seed <= kSeeds; ++seed) {
-        const double own = meanOf(c->indirect(gather, with(options, light), seed));
-        const double off = own / meanOf(c->ofAll(light, seed)) - 1.0;
-        sum += off, squares += off * off;
-      }
-      const double mean = sum / kSeeds;
-      const double error = std::sqrt((squares / kSeeds - mean * mean) / (kSeeds - 1));
-      EXPECT_LE(std::abs(mean), 3.0 * error + 1e-6) << c->world.scene.name() << ", " << name;
-      EXPECT_LE(error, maxError) << c->world.scene.name() << ", " << name;
+      const auto errorOf = [&](uint64_t seed) {
+        return meanOf(c->indirect(gather, with(options, light), seed)) /
+                   meanOf(c->ofAll(light, seed)) -
+               1.0;
+      };
+      EXPECT_TRUE(hasMeanZero(errorOf, seeds, maxError)) << c->world.scene.name() << ", " << name;
     }
   }
 }

@@ -9,7 +9,7 @@
 #include "tools/estimate/estimate.h"
 #include "tools/place/place.h"
 #include "tools/render/render.h"
-#include "transport/lights.h"
+#include "transport/lights/lights.h"
 
 namespace bnvpl::test {
 

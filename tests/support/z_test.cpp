@@ -123,6 +123,9 @@ ZResult zTest(const Render& a, const Render& b, const ZTest& options) {
       if (l == 0) keepPixels(sums, kChannels[c], seeds, result);
       result.tests += sums.a.size();
       for (size_t i = 0; i < sums.a.size(); ++i) {
+        if (sums.a[i] != 0.0 || sums.b[i] != 0.0) result.black = false;
+      }
+      for (size_t i = 0; i < sums.a.size(); ++i) {
         const double t = sums.t(i, seeds);
         if (!(std::fabs(t) > worst)) continue;
         worst = std::fabs(t);
@@ -142,6 +145,7 @@ ZResult zTest(const Render& a, const Render& b, const ZTest& options) {
 testing::AssertionResult sameExpectation(const Render& a, const Render& b, const ZTest& options) {
   const ZResult r = zTest(a, b, options);
   if (r.nonFinite > 0) return testing::AssertionFailure() << r.nonFinite << " values not finite";
+  if (r.black) return testing::AssertionFailure() << "all images are black";
   if (r.p >= options.significance) return testing::AssertionSuccess();
   return testing::AssertionFailure()
          << "p = " << r.p << " over " << r.tests << " tests; the worst: " << r.channel << " of the "
@@ -150,15 +154,21 @@ testing::AssertionResult sameExpectation(const Render& a, const Render& b, const
          << " seeds; images: " << keptImage(r.image);
 }
 
-double noiseOf(const Render& render, uint64_t pairs) {
-  double sum = 0.0;
+double noiseOf(const Render& render, uint64_t pairs, double limit) {
+  std::vector<double> differences;
   for (uint64_t seed = 1; seed < 2 * pairs; seed += 2) {
     const Image a = render(seed), b = render(seed + 1);
     for (const char channel : kChannels) {
       const std::vector<float>&p = *a.find({channel}), &q = *b.find({channel});
-      for (size_t i = 0; i < p.size(); ++i) sum += std::pow(double{p[i]} - double{q[i]}, 2);
+      for (size_t i = 0; i < p.size(); ++i)
+        differences.push_back(std::fabs(double{p[i]} - double{q[i]}));
     }
   }
+  const auto last = differences.begin() + std::ptrdiff_t(limit * double(differences.size() - 1));
+  std::ranges::nth_element(differences, last);
+  const double largest = *last;
+  double sum = 0.0;
+  for (const double d : differences) sum += std::pow(std::min(d, largest), 2);
   return std::sqrt(sum / double(pairs));
 }
 

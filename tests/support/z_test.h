@@ -42,6 +42,7 @@ struct ZResult {
   char channel = 'R';
   double meanA = 0.0, meanB = 0.0;  // means over the block and all seeds
   size_t nonFinite = 0;             // count over both renderers
+  bool black = true;                // both renderers gave nothing but 0
   Image image;                      // means "a" and "b", and "t", for each pixel
 };
 
@@ -52,7 +53,8 @@ testing::AssertionResult sameExpectation(const Render& a, const Render& b,
                                          const ZTest& options = {});
 
 // Noise of the images with seeds 1 and 2, 3 and 4, and so on: the root of the squared differences,
-// summed over pixels and R, G, B and averaged over the pairs.
-double noiseOf(const Render& render, uint64_t pairs = 1);
+// summed over pixels and R, G, B and averaged over the pairs. No difference counts as more than the
+// quantile `limit` of all: a few pixels of a small image would decide it. 1: fireflies count.
+double noiseOf(const Render& render, uint64_t pairs = 6, double limit = 0.95);
 
 }  // namespace bnvpl::test

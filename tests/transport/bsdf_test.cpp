@@ -78,7 +78,7 @@ TEST(Bsdf, LambertReflectsItsAlbedoFromEverywhere) {
     expectClose(meanWeight(bsdf, LobeGroup::Rough, TransportMode::Radiance, 1000),
                 {0.8f, 0.5f, 0.1f}, 1e-4f);
     EXPECT_EQ(bsdf.specularProbability(), 0.0f);
-    EXPECT_FLOAT_EQ(bsdf.reflectance(), 0.8f);
+    EXPECT_FLOAT_EQ(bsdf.survivalProbability(), 0.8f);
     EXPECT_EQ(bsdf.eval(LobeGroup::Rough, {0, 0, -1}), Vec3());
   }
 }
@@ -97,8 +97,8 @@ TEST(Bsdf, NeverReflectsMoreThanArrives) {
       for (size_t k = 0; k < 3; ++k)
         EXPECT_LE(sum[k], most[k] * 1.01f) << c.name << " from z = " << wo.z;
       EXPECT_LE(maxComponent(bsdf.roughAlbedo()), 1.0f) << c.name;
-      EXPECT_LE(bsdf.reflectance(), 1.0f) << c.name;
-      EXPECT_GE(bsdf.reflectance(), maxComponent(sum) * 0.99f)
+      EXPECT_LE(bsdf.survivalProbability(), 1.0f) << c.name;
+      EXPECT_GE(bsdf.survivalProbability(), maxComponent(sum) * 0.99f)
           << c.name;  // else Russian roulette would brighten
     }
   }

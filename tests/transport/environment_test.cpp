@@ -76,6 +76,20 @@ TEST(Environment, RotatesAsMeshesDo) {
       << after.x << " " << after.y << " " << after.z;
 }
 
+LightSample sampled(const Sky& sky, float u, float v) {
+  LightSample s;
+  EXPECT_TRUE(sky.lights->sampleDirect(0, {}, u, v, s));
+  EXPECT_NEAR(length(s.wi), 1.0f, 1e-5f);
+  return s;
+}
+// At the edge of a texel, rounding may return its neighbour.
+bool isWhatARayFinds(const Sky& sky, const LightSample& s) {
+  float pdf = 0.0f;
+  const Vec3 radiance = sky.look(s.wi, &pdf);
+  return std::fabs(pdf - s.pdf) < 1e-3f * s.pdf &&
+         length(radiance - s.radianceOverPdf * s.pdf) < 1e-3f * length(radiance);
+}
+
 TEST(Environment, SampleIsWhatARayFinds) {
   for (const float rotate : {0.0f, 100.0f, -300.0f}) {
     const Sky sky(noisySky(16, 8), rotate, 2.0f);
@@ -84,18 +98,35 @@ TEST(Environment, SampleIsWhatARayFinds) {
     for (int i = 0; i < kDraws; ++i) {
       Rng rng(5, uint64_t(i));
       const float u = rng.next(), v = rng.next();
-      LightSample s;
-      ASSERT_TRUE(sky.lights->sampleDirect(0, {}, u, v, s));
-      EXPECT_NEAR(length(s.wi), 1.0f, 1e-5f);
-      float pdf = 0.0f;
-      const Vec3 radiance = sky.look(s.wi, &pdf);
-      // At the edge of a texel, rounding may return its neighbour.
-      const bool same = std::fabs(pdf - s.pdf) < 1e-3f * s.pdf &&
-                        length(radiance - s.radianceOverPdf * s.pdf) < 1e-3f * length(radiance);
-      differ += same ? 0 : 1;
+      differ += isWhatARayFinds(sky, sampled(sky, u, v)) ? 0 : 1;
     }
     EXPECT_LT(differ, kDraws / 1000) << rotate;
   }
+}
+
+// Rows within a thousandth of a turn of the poles, where cosines of polar angles round to 1.
+TEST(Environment, SamplesOfFineRowsAtThePolesAreWhatARayFinds) {
+  constexpr uint32_t kRows = 4096, kColumns = 4;
+  EnvironmentImage image;
+  image.width = kColumns;
+  image.height = kRows;
+  image.radiance.assign(size_t{kRows} * kColumns, Vec3());
+  for (const uint32_t row : {0u, 1u, 2u, 3u, kRows - 4, kRows - 3, kRows - 2, kRows - 1}) {
+    for (uint32_t x = 0; x < kColumns; ++x)
+      image.radiance[row * kColumns + x] = Vec3(float(1 + (row * 5 + x) % 7));
+  }
+  const Sky sky(std::move(image));
+  int differ = 0;
+  constexpr int kDraws = 20000;
+  for (int i = 0; i < kDraws; ++i) {
+    Rng rng(6, uint64_t(i));
+    const float u = rng.next(), v = rng.next();
+    const LightSample s = sampled(sky, u, v);
+    differ += isWhatARayFinds(sky, s) ? 0 : 1;
+    const Point2 back = sky.lights->invertSample(0, s.wi);
+    differ += std::fabs(back.x - u) < 1e-2f && std::fabs(back.y - v) < 1e-2f ? 0 : 1;
+  }
+  EXPECT_LT(differ, kDraws / 200);
 }
 
 // Sums over the sphere on a fine grid that is uniform in cosine and longitude.

@@ -2,9 +2,9 @@
 #include "core/random.h"
 #include "core/random_streams.h"
 #include "core/sampling.h"
-#include "scene/scene_builder.h"
+#include "scene/builder/scene_builder.h"
 #include "tests/scene/scene_files.h"
-#include "transport/accelerator.h"
+#include "transport/accelerator/accelerator.h"
 
 namespace bnvpl {
 namespace {

@@ -99,7 +99,7 @@ TEST(Glass, IsSpecularOnly) {
   const Bsdf bsdf(scene, p);
   EXPECT_EQ(bsdf.specularProbability(), 1.0f);
   EXPECT_FALSE(bsdf.hasRough());
-  EXPECT_EQ(bsdf.reflectance(), 1.0f);
+  EXPECT_EQ(bsdf.survivalProbability(), 1.0f);
   Rng rng(1, 1);
   BsdfSample s;
   EXPECT_FALSE(bsdf.sample(LobeGroup::Rough, TransportMode::Radiance, rng, s));

@@ -1,5 +1,5 @@
 // Strata of lights: each point of a light has one, and densities match the sampling.
-#include "transport/light_strata.h"
+#include "transport/direct_light/light_strata.h"
 
 #include "tests/transport/lit_scene.h"
 #include "tests/transport/plain_scene.h"
@@ -70,7 +70,7 @@ void expectConsistent(const LightStrata& strata, const LightSet& lights) {
   for (uint32_t s = 0; s < strata.size(); ++s) {
     all += double{strata.powerFraction(s)};
     for (uint32_t k = 0; k < 3; ++k) {
-      const LightPoint place = strata.place(s, r2Sequence(k, 0.1, 0.2));
+      const LightPoint place = strata.samplePoint(s, r2Sequence(k, 0.1, 0.2));
       EXPECT_EQ(strata.stratumOf(place), s);
       EXPECT_EQ(strata.pickProbability(place.light), lights.pickProbability(place.light));
     }

@@ -1,4 +1,5 @@
 // Photons carry the power of their light, and light the floor as direct light does.
+#include "tests/transport/lit_scene.h"
 #include "tests/transport/plain_scene.h"
 
 namespace bnvpl {
@@ -46,6 +47,22 @@ const std::vector<EmitCase>& cases() {
                                          {"sun", sun(0.53f)},
                                          {"sky", sky()}};
   return all;
+}
+
+// Paths alone have the light that photons cannot bring.
+TEST(Emission, PhotonsFromInfinityReachWhatLiesInOrBehindTheScene) {
+  for (const EmitCase& c : cases()) {
+    Scene scene = floorScene();
+    scene.lights.push_back(c.spec);
+    const Lit lit(std::move(scene));
+    const Bounds& box = lit.scene.bounds;
+    const Vec3 centre = box.center(), towards = normalize({0.3f, 1, 0.2f});
+    const bool finite = std::string_view(c.name) == "point" || std::string_view(c.name) == "spot";
+    EXPECT_TRUE(lit.lights.photonsReach(0, towards, centre)) << c.name;
+    EXPECT_TRUE(lit.lights.photonsReach(0, towards, centre - 5.0f * towards)) << c.name;
+    const Vec3 beside = centre + Vec3(10.0f * box.diagonal(), 0, 0);
+    EXPECT_EQ(lit.lights.photonsReach(0, towards, beside), finite) << c.name;
+  }
 }
 
 TEST(Emission, MeanFluxIsThePower) {

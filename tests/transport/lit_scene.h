@@ -1,8 +1,8 @@
 // A scene with what its light is sampled by.
 #pragma once
 
-#include "transport/accelerator.h"
-#include "transport/lights.h"
+#include "transport/accelerator/accelerator.h"
+#include "transport/lights/lights.h"
 
 namespace bnvpl {
 

@@ -3,7 +3,7 @@
 
 #include <set>
 
-#include "scene/material_inputs.h"
+#include "scene/visit_material.h"
 #include "tests/transport/plain_scene.h"
 
 namespace bnvpl {
@@ -60,6 +60,21 @@ TEST(ModelReport, MtlHasAReflectanceForEveryModel) {
     EXPECT_GT(most, 0.0f) << model.index();
     EXPECT_LE(most, 1.0f) << model.index();
   });
+}
+
+// Phong's exponent is 2 / alpha^2 - 2, whichever of the mappings leads from roughness to alpha.
+TEST(ModelReport, MtlHasTheExponentOfTheMetalsAlpha) {
+  const Scene scene = sceneOf(lambert(Vec3(0.5f)));
+  using Alpha = Roughness::Alpha;
+  for (const auto& [mapping, roughness] :
+       {std::pair{Alpha::Same, 0.25f}, {Alpha::Square, 0.5f}, {Alpha::Root, 0.0625f}}) {
+    ConductorModel metal;
+    metal.roughness = Roughness(roughness, mapping);
+    EXPECT_NEAR(modelToMtl(scene, metal).phong.exponent, 30.0f, 1e-4f) << roughness;
+    CoatedConductorModel coated;
+    coated.roughness = Roughness(roughness, mapping);
+    EXPECT_NEAR(modelToMtl(scene, coated).phong.exponent, 30.0f, 1e-4f) << roughness;
+  }
 }
 
 }  // namespace

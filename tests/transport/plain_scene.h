@@ -10,7 +10,7 @@
 #include "core/random_streams.h"
 #include "core/sampling.h"
 #include "transport/bsdf.h"
-#include "transport/lights.h"
+#include "transport/lights/lights.h"
 
 namespace bnvpl {
 

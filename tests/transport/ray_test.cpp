@@ -2,7 +2,7 @@
 #include "core/random_streams.h"
 #include "core/sampling.h"
 #include "tests/scene/scene_files.h"
-#include "transport/accelerator.h"
+#include "transport/accelerator/accelerator.h"
 
 namespace bnvpl {
 namespace {

@@ -1,6 +1,6 @@
 // Normal maps and bump maps: the shading normals that rays report.
 #include "tests/transport/plain_scene.h"
-#include "transport/shading_frame.h"
+#include "transport/bump_mapping.h"
 
 namespace bnvpl {
 namespace {
@@ -90,7 +90,7 @@ TEST(Relief, StaysAboveTheSurface) {
   Scene scene = square(mapped(&Relief::normalMap, 1000.0f));
   scene.expressions.push_back(colourOf({1, 0, -1}));
   const SurfacePoint hit = hitFrom(scene, {0.3f, 0.6f, 2});
-  EXPECT_GE(dot(hit.ns, hit.ng), 0.9f * kMinRelief);
+  EXPECT_GE(dot(hit.ns, hit.ng), 0.9f * kMinShadingCosine);
   EXPECT_NEAR(length(hit.ns), 1.0f, 1e-5f);
   EXPECT_GT(hit.ns.x, 0.9f);
 }

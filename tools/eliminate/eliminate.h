@@ -7,8 +7,8 @@
 #include "core/progress.h"
 #include "formats/vpl/vpl_table.h"
 #include "tools/common/stage/method.h"
-#include "transport/accelerator.h"
-#include "transport/lights.h"
+#include "transport/accelerator/accelerator.h"
+#include "transport/lights/lights.h"
 
 namespace bnvpl {
 

@@ -4,7 +4,7 @@
 
 #include "core/hash.h"
 #include "formats/vpl/vpl_io.h"
-#include "tools/common/run/memory.h"
+#include "tools/common/process/memory.h"
 #include "tools/common/stage/stage_run.h"
 #include "tools/eliminate/cost_of_eliminating.h"
 #include "tools/eliminate/report.h"

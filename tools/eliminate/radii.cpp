@@ -17,6 +17,7 @@ namespace {
 // r_max depends on the square root of the area, so the error of about 1 % that this many rows have
 // does not matter.
 constexpr size_t kMaxAreaRows = 16384;
+constexpr float kMaxRadius = 4e9f;  // that of the column `radius`
 constexpr size_t kMaxAreaCandidates = size_t{1} << 18;
 
 std::vector<uint32_t> evenlySpacedRows(size_t count, size_t max) {
@@ -57,14 +58,15 @@ double estimateArea(std::span<const Vec3> position, std::span<const Vec3> normal
   return areaOf(position, normal, k, progress);
 }
 
-// Throws InputError unless all squared radii are normal floats. They are not if --area is absurd or
-// candidates lie absurdly far apart.
+// Throws InputError unless all radii fit their column, and their squares are normal floats. They
+// are not if --area is absurd or candidates lie absurdly far apart.
 void requireUsable(const std::vector<float>& radii) {
   for (const float r : radii) {
-    if (std::isnormal(r * r)) continue;
+    if (std::isnormal(r * r) && r <= kMaxRadius) continue;
     std::ostringstream text;
     text << "the radius of a VPL would be " << r
-         << ", beyond what floats can square; see --area, and the positions of the candidates";
+         << ", beyond what floats can square, or any scene; see --area, and the positions of the "
+            "candidates";
     throw InputError(text.str());
   }
 }
@@ -77,7 +79,7 @@ CandidateRadii candidateRadii(std::span<const Vec3> position, std::span<const Ve
   const auto neighbours = [&] { return static_cast<unsigned>(options[kNeighboursOption]); };
   const double given = options[kAreaOption];
   CandidateRadii result;
-  if (options[kDensityOption] == "uniform") {
+  if (options.meet(valueIs(kDensityOption, "uniform"))) {
     result.area = given > 0.0 ? given : estimateArea(position, normal, neighbours(), progress);
     result.rMax = packedDiskRadius(result.area, count);
     result.radius.assign(position.size(), static_cast<float>(result.rMax));

@@ -20,14 +20,14 @@ inline constexpr auto kDensityOption =
 // It bounds the radius by r_max / sqrt(share): an isolated candidate must not stand for half a
 // room.
 inline constexpr auto kUniformShareOption =
-    neededBy({Condition{"density", "local"}},
+    neededBy({valueIs(kDensityOption, "local")},
              realOption("uniform-share", "0.2", 0, 1, "share of the VPLs",
                         "share that is spread evenly; the rest follows the candidates' density"));
 inline constexpr auto kAreaOption = inTopic(
     Topic::Quality, realOption("area", "0", 0, 1e19, "scene units squared",
                                "indirectly visible area; 0: estimated from the candidates"));
 inline constexpr auto kNeighboursOption =
-    neededBy({Condition{"density", "local"}, Condition{"area", "0"}},
+    neededBy({valueIs(kDensityOption, "local"), valueIs(kAreaOption, "0")},
              wholeOption("neighbours", "20", 1, 1000, "", "k of the density estimate"));
 inline constexpr auto kRadiusOptions =
     optionTable(kDensityOption, kUniformShareOption, kAreaOption, kNeighboursOption);

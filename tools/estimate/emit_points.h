@@ -11,7 +11,7 @@
 
 #include "formats/vpl/vpl_columns.h"
 #include "tools/common/options/option.h"
-#include "transport/accelerator.h"
+#include "transport/accelerator/accelerator.h"
 
 namespace bnvpl {
 

@@ -8,9 +8,9 @@
 #include "core/work_controls.h"
 #include "formats/vpl/vpl_table.h"
 #include "tools/common/stage/method.h"
-#include "transport/accelerator.h"
-#include "transport/emission_guide.h"
-#include "transport/lights.h"
+#include "transport/accelerator/accelerator.h"
+#include "transport/lights/lights.h"
+#include "transport/photons/emission_guide.h"
 
 namespace bnvpl {
 

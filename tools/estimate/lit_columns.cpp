@@ -8,6 +8,10 @@ std::vector<float> reachOf(const VplTable& vpls, float radius) {
   return reach;
 }
 
+Coverage coverageOf(const VplTable& vpls, const Accelerator& accel, float radius) {
+  return Coverage(vpls.position, vpls.normal, reachOf(vpls, radius), accel);
+}
+
 void beginLit(VplTable& vpls, float radius) {
   vpls.stage = VplStage::Lit;
   vpls.reachFactor = double{radius};
@@ -26,8 +30,8 @@ void finishGroups(VplGroups groups, VplTable& lit) {
     const auto of = [&](std::vector<Vec3>& all) {
       return std::span(all).subspan(i * count, count);
     };
-    balanceGroups(of(groups.flux), lit.flux[i]);
-    balanceGroups(of(groups.firstBounceFlux), lit.firstBounceFlux[i]);
+    addRoundingToLargest(of(groups.flux), lit.flux[i]);
+    addRoundingToLargest(of(groups.firstBounceFlux), lit.firstBounceFlux[i]);
   }
   addVplGroups(groups, lit);
 }

@@ -5,7 +5,8 @@
 
 #include "formats/vpl/vpl_table.h"
 #include "tools/common/options/option.h"
-#include "transport/accelerator.h"
+#include "transport/accelerator/accelerator.h"
+#include "transport/coverage.h"
 #include "transport/vpl_groups.h"
 
 namespace bnvpl {
@@ -15,6 +16,8 @@ inline constexpr RealOption kRadiusOption =
                                        "distance within which a VPL collects light"));
 // Reach of each VPL, world units.
 std::vector<float> reachOf(const VplTable& vpls, float radius);
+// The surfaces that VPLs of this reach stand for. Borrows the VPLs and the accelerator.
+Coverage coverageOf(const VplTable& vpls, const Accelerator& accel, float radius);
 
 // Adds the columns of stage Lit, without flux. Every VPL emits from its position.
 void beginLit(VplTable& vpls, float radius);

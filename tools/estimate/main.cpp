@@ -2,7 +2,7 @@
 //   vpl-estimate scene.toml vpls.vpl -o lit.vpl --photons 10M
 #include "core/hash.h"
 #include "formats/vpl/vpl_io.h"
-#include "tools/common/run/memory.h"
+#include "tools/common/process/memory.h"
 #include "tools/common/stage/stage_run.h"
 #include "tools/estimate/memory_of_sums.h"
 #include "tools/estimate/report.h"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "tools/estimate/photon_deposits.h"
-#include "transport/photon_walk.h"
+#include "transport/photons/photon_walk.h"
 
 namespace bnvpl {
 

@@ -93,9 +93,8 @@ PhotonStart startOf(const LightSet& lights, const PhotonRun& run, uint64_t photo
   }
   const auto total = static_cast<double>(run.perLight.total());
   const EmissionSample e =
-      run.guide->draw((static_cast<double>(photon) + double{rng.next()}) / total, rng);
+      run.guide->draw((static_cast<double>(photon) + double{rng.next()}) / total, rng, density);
   light = e.light;
-  density = run.guide->density(e);
   PhotonStart start = lights.emit(light, e.at);
   start.flux *=
       static_cast<float>(1.0 / (total * double{lights.pickProbability(light)} * double{density}));
@@ -185,7 +184,8 @@ void depositToOneInSight(const PhotonDeposits& deposits, const PhotonHit& hit, R
                  hit.flux);
 }
 
-PhotonDeposits::PhotonDeposits(const EstimateInputs& in, float radius, uint64_t photons)
+PhotonDeposits::PhotonDeposits(const EstimateInputs& in, const Coverage& coverage, float radius,
+                               uint64_t photons)
     : position_(in.vpls.position),
       vplRadius_(in.vpls.radius),
       radius_(radius),
@@ -194,7 +194,7 @@ PhotonDeposits::PhotonDeposits(const EstimateInputs& in, float radius, uint64_t 
       fixed_(photonPower_, photons),
       invPhotonPower_(1.0 / photonPower_),
       squareUnit_(std::ldexp(1.0, -std::min(36, 54 - static_cast<int>(std::bit_width(photons))))),
-      coverage_(in.vpls.position, in.vpls.normal, reachOf(in.vpls, radius), in.accel) {}
+      coverage_(coverage) {}
 
 namespace {
 
@@ -226,7 +226,10 @@ void PhotonDeposits::deposit(uint32_t vpl, const PhotonHit& hit, Vec3 flux,
   const double relative = double{mean(flux)} * invPhotonPower_;
   const double square = relative * relative / squareUnit_;
   addChecked(s.squares, squareUnits(square, u));
-  addChecked(s.squaresByPower, squareUnits(square * double{hit.density}, u));
+  if (hit.onlyPhotons)
+    addChecked(s.onlySquares, squareUnits(square, u));
+  else
+    addChecked(s.squaresByPower, squareUnits(square * double{hit.density}, u));
   sums.points.offer(vpl, double{mean(flux)}, hit.point);  // in watts, as paths offer theirs
   ++s.photons;
 }
@@ -246,9 +249,11 @@ EstimateResult estimateByPhotons(const EstimateInputs& in, const Values& options
                                  const DepositRule& rule) {
   in.lights.requirePower();
   const PhotonsPerLight perLight(in.lights, options[kPhotonsOption]);
-  const PhotonDeposits deposits(in, options.real32(kRadiusOption), perLight.total());
+  const Coverage coverage = coverageOf(in.vpls, in.accel, options.real32(kRadiusOption));
+  const PhotonDeposits deposits(in, coverage, options.real32(kRadiusOption), perLight.total());
   const auto maxBounces = static_cast<unsigned>(options[kPhotonBouncesOption]);
-  const LearnedEmission emission = learnPhotonEmission(in, options, maxBounces, perLight.total());
+  const LearnedEmission emission =
+      learnPhotonEmission(in, coverage, options, maxBounces, perLight.total());
   const PhotonRun run{streamKey(options[kSeedOption], RandomStream::Photons),
                       options[kEmitPointsOption],
                       maxBounces,

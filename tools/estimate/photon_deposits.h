@@ -13,7 +13,7 @@
 #include "tools/estimate/photon_sums.h"
 #include "tools/estimate/photons_per_light.h"
 #include "transport/coverage.h"
-#include "transport/emission_guide.h"
+#include "transport/photons/emission_guide.h"
 #include "transport/vpl_groups.h"
 
 namespace bnvpl {
@@ -48,7 +48,9 @@ struct PhotonHit {
 // Adds deposits of hits to exact sums. Thread-safe where each thread has its own sums.
 class PhotonDeposits {
  public:
-  PhotonDeposits(const EstimateInputs& in, float radius, uint64_t photons);
+  // Borrows all but the numbers.
+  PhotonDeposits(const EstimateInputs& in, const Coverage& coverage, float radius,
+                 uint64_t photons);
 
   // Photons share the flux of VPL i with paths: their deposits weigh g / (g + misRatios[i]) by
   // the density g of their start (PhotonMis). Light that only photons find weighs 1, and so does
@@ -65,7 +67,9 @@ class PhotonDeposits {
   double photonPower() const { return photonPower_; }  // mean power of a photon, W
   // Variance of the flux of a VPL if deposits are independent, W^2.
   double variance(const VplSum& s) const { return squaresOf(s.squares); }
-  // The same if photons started in proportion to power.
+  // The part of it from light that paths cannot find, and the rest if photons started in proportion
+  // to power.
+  double onlyVariance(const VplSum& s) const { return squaresOf(s.onlySquares); }
   double varianceByPower(const VplSum& s) const { return squaresOf(s.squaresByPower); }
   uint32_t groups() const { return groups_; }  // light groups; 0: not told apart
   // The flux of each VPL by light group.
@@ -86,7 +90,7 @@ class PhotonDeposits {
   double invPhotonPower_;
   // Unit of VplSum::squares, which leaves room for the deposits of all photons.
   double squareUnit_;
-  Coverage coverage_;
+  const Coverage& coverage_;
   std::span<const float> misRatios_;
 };
 

@@ -5,7 +5,7 @@
 
 #include "core/random_streams.h"
 #include "tools/estimate/photon_deposits.h"
-#include "transport/photon_walk.h"
+#include "transport/photons/photon_walk.h"
 
 namespace bnvpl {
 
@@ -34,9 +34,10 @@ std::vector<double> weightsByFlux(const EstimateInputs& in, const PhotonDeposits
 
 }  // namespace
 
-LearnedEmission learnPhotonEmission(const EstimateInputs& in, const Values& options,
-                                    unsigned maxBounces, uint64_t photons) {
-  if (options[kEmissionOption] == "power" || in.controls.source) return {EmissionGuide(in.lights)};
+LearnedEmission learnPhotonEmission(const EstimateInputs& in, const Coverage& coverage,
+                                    const Values& options, unsigned maxBounces, uint64_t photons) {
+  if (options.meet(valueIs(kEmissionOption, "power")) || in.controls.source)
+    return {EmissionGuide(in.lights)};
   const uint64_t pilot = std::min(kMaxPilot,
                                   (photons + kPhotonsPerPilotPhoton - 1) / kPhotonsPerPilotPhoton),
                  sent = unitsToTry(in.controls.trial, pilot, kTrialPhotons);
@@ -45,15 +46,14 @@ LearnedEmission learnPhotonEmission(const EstimateInputs& in, const Values& opti
   const uint64_t key = streamKey(options[kSeedOption], RandomStream::PhotonEmission);
   const PhotonsPerLight perLight(in.lights,
                                  std::max<uint64_t>(1, sent / kPilotPhotonsPerFluxPhoton));
-  const PhotonDeposits deposits(in, options.real32(kRadiusOption), perLight.total());
+  const PhotonDeposits deposits(in, coverage, options.real32(kRadiusOption), perLight.total());
   const std::vector<double> weights =
       weightsByFlux(in, deposits, {mix64(key), 0, maxBounces, perLight, deposits});
-  const Coverage& coverage = deposits.coverage();
   return learnEmission(
       in.lights, sent - sent / kPilotPhotonsPerFluxPhoton, key,
       [&](const EmissionSample&, const PhotonStart& start, Rng& rng, bool) {
         double squares = 0.0;
-        Rng choice = rng;  // which of several VPLs gets the light
+        Rng choice = rng.fork();  // which of several VPLs gets the light
         followPhoton(
             in.accel, PhotonWalk(start, maxBounces, rng), [&](const Bsdf& bsdf, Vec3 flux, bool) {
               const SurfacePoint& hit = bsdf.point();

@@ -3,6 +3,7 @@
 
 #include "tools/common/options/option.h"
 #include "tools/estimate/estimate.h"
+#include "transport/coverage.h"
 
 namespace bnvpl {
 
@@ -16,7 +17,7 @@ inline constexpr auto kEmissionOption =
 // The guide minimises the sum over VPLs of variance over flux, with a tenth of the mean flux added
 // to each VPL's. Learns nothing with --emission power, and in a merge, which traces no
 // photon. `maxBounces`: that of the photons.
-LearnedEmission learnPhotonEmission(const EstimateInputs& in, const Values& options,
-                                    unsigned maxBounces, uint64_t photons);
+LearnedEmission learnPhotonEmission(const EstimateInputs& in, const Coverage& coverage,
+                                    const Values& options, unsigned maxBounces, uint64_t photons);
 
 }  // namespace bnvpl

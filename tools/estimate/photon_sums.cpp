@@ -21,6 +21,7 @@ void VplSum::add(const VplSum& o) {
     addChecked(onlyPhotons[c], o.onlyPhotons[c]);
   }
   addChecked(squares, o.squares);
+  addChecked(onlySquares, o.onlySquares);
   addChecked(squaresByPower, o.squaresByPower);
   photons += o.photons;
 }

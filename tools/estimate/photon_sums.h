@@ -57,9 +57,10 @@ inline void addChecked(int64_t& sum, int64_t term) {
 struct VplSum {  // without padding, as its bytes are saved
   std::array<int64_t, 3> flux{}, firstBounce{};
   std::array<int64_t, 3> onlyPhotons{};  // part of flux that paths from the VPL cannot find
-  // Sums of (mean deposit / mean photon power)^2, see PhotonDeposits::variance(); and the same
-  // times the density with which the photon started, relative to emission by power.
-  int64_t squares = 0, squaresByPower = 0;
+  // Sums of (mean deposit / mean photon power)^2, see PhotonDeposits::variance(): of all deposits
+  // and of those of onlyPhotons; and of the others times the density with which the photon started,
+  // relative to emission by power.
+  int64_t squares = 0, onlySquares = 0, squaresByPower = 0;
   uint64_t photons = 0;
 
   void add(const VplSum& o);

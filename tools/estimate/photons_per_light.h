@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "transport/lights.h"
+#include "transport/lights/lights.h"
 
 namespace bnvpl {
 

@@ -123,24 +123,19 @@ PathResult tracePathsOfAll(const EstimateInputs& in, const VplPaths& vplPaths,
     for (size_t i = unit * kVplsPerUnit; i < endOf(unit); ++i) all += points[i];
     return vplPaths.pathsOf(all);
   };
-  const auto ofUnit = [&](size_t unit) {
-    const size_t begin = unit * kVplsPerUnit;
-    return std::span(sums).subspan(begin, endOf(unit) - begin);
-  };
-  const auto pointsOfUnit = [&](size_t unit) {
-    const size_t begin = unit * kVplsPerUnit;
-    return result.points.winners().subspan(begin * perVpl, (endOf(unit) - begin) * perVpl);
-  };
-  const auto groupsOfUnit = [&](size_t unit) {
-    const size_t begin = unit * kVplsPerUnit;
-    return std::span(result.groups).subspan(begin * groups, (endOf(unit) - begin) * groups);
+  // Calls visit(name of the work, its records of the unit) for each kind of work.
+  const auto forRecords = [&](size_t unit, const auto& visit) {
+    const size_t begin = unit * kVplsPerUnit, count = endOf(unit) - begin;
+    visit(kPathWork, std::span(sums).subspan(begin, count));
+    visit(kPathPointsWork, result.points.winners().subspan(begin * perVpl, count * perVpl));
+    if (groups > 0)
+      visit(kPathGroupsWork, std::span(result.groups).subspan(begin * groups, count * groups));
   };
   if (controls.source) {
-    for (size_t unit = 0; unit < done.size(); ++unit) {
-      takeRecord(*controls.source, kPathWork, unit, ofUnit(unit));
-      takeRecord(*controls.source, kPathPointsWork, unit, pointsOfUnit(unit));
-      if (groups > 0) takeRecord(*controls.source, kPathGroupsWork, unit, groupsOfUnit(unit));
-    }
+    for (size_t unit = 0; unit < done.size(); ++unit)
+      forRecords(unit, [&](auto work, auto records) {
+        takeRecord(*controls.source, work, unit, records);
+      });
     return result;
   }
   if (!controls.state.empty()) {
@@ -166,9 +161,8 @@ PathResult tracePathsOfAll(const EstimateInputs& in, const VplPaths& vplPaths,
       [&] { return encode(done, result); });
   for (size_t unit = 0; controls.sink && unit < done.size(); ++unit) {
     if (!controls.shard.has(unit)) continue;
-    giveRecord(*controls.sink, kPathWork, unit, ofUnit(unit));
-    giveRecord(*controls.sink, kPathPointsWork, unit, pointsOfUnit(unit));
-    if (groups > 0) giveRecord(*controls.sink, kPathGroupsWork, unit, groupsOfUnit(unit));
+    forRecords(unit,
+               [&](auto work, auto records) { giveRecord(*controls.sink, work, unit, records); });
   }
   return result;
 }

@@ -47,7 +47,6 @@ class VplPaths {
   struct Settings {
     uint64_t key, paths;                                 // paths from each point
     unsigned maxBounces;                                 // at least 1, the bounce at the VPL
-    float radius;                                        // reach in units of each VPL's radius
     size_t emitPoints;                                   // per VPL
     const SpatialLightSampler* spatialLights = nullptr;  // learned distribution for light sampling
     // One ratio for each VPL, for MIS with the photons from `guide` (PhotonMis); empty: no photons
@@ -55,10 +54,11 @@ class VplPaths {
     std::span<const float> misRatio = {};
     const EmissionGuide* guide = nullptr;
   };
-  VplPaths(const EstimateInputs& in, const Settings& settings)
+  // Borrows `in` and `coverage`.
+  VplPaths(const EstimateInputs& in, const Coverage& coverage, const Settings& settings)
       : in_(in),
         settings_(settings),
-        coverage_(in.vpls.position, in.vpls.normal, reachOf(in.vpls, settings.radius), in.accel),
+        coverage_(coverage),
         length_{settings.maxBounces - 1},
         groups_(in.accel.scene().lightGroupCount()) {}
 
@@ -78,7 +78,7 @@ class VplPaths {
 
   const EstimateInputs& in_;
   Settings settings_;
-  Coverage coverage_;
+  const Coverage& coverage_;
   PathLength length_;
   uint32_t groups_;
 };

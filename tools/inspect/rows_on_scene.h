@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "formats/vpl/vpl_table.h"
-#include "tools/common/files/run_files.h"
+#include "tools/common/stage/run_files.h"
 #include "tools/common/stage/scene_options.h"
 
 namespace bnvpl {

@@ -4,10 +4,10 @@
 
 #include "core/files.h"
 #include "tools/common/files/depfile.h"
-#include "tools/common/files/run_files.h"
 #include "tools/common/options/exposure.h"
 #include "tools/common/options/help.h"
-#include "tools/common/run/exit_codes.h"
+#include "tools/common/process/exit_codes.h"
+#include "tools/common/stage/run_files.h"
 #include "tools/merge/merge.h"
 
 namespace bnvpl {
@@ -30,10 +30,12 @@ int runMerge(const std::vector<fs::path>& inputs, const MergeOutput& output,
   const MergeStage& stage = stageOf(shards);
   RunFiles used;
   for (const fs::path& file : inputs) used.reads("shard", file);
-  used.writes("-o", output.product, {stage.product(shards.whole()), OutputKind::Shard});
-  used.shardsOf(std::string(stage.tool));
+  const std::string extension = lowerExtension(output.product);
+  const bool toShard = extension == kShardExtension;
+  std::vector<OutputKind> kinds{stage.product(shards.whole())};
+  if (!extension.empty()) kinds.push_back(OutputKind::Shard);  // else the product is written
+  used.writes("-o", output.product, kinds).shardsOf(std::string(stage.tool));
   used.writes("--png", output.png, {OutputKind::Png}).writes(tool).check();
-  const bool toShard = lowerExtension(output.product) == kShardExtension;
   if (!output.png.empty() && (toShard || !stage.image))
     throw UsageError("--png is a preview of an image; leave it out");
   if (!toShard) shards.requireComplete();

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "formats/vpl/vpl_table.h"
-#include "tools/common/files/output_kind.h"
 #include "tools/common/run/run_tool.h"
+#include "tools/common/stage/output_kind.h"
 #include "tools/merge/shard_set.h"
 
 namespace bnvpl {

@@ -1,5 +1,5 @@
 #include "formats/vpl/vpl_io.h"
-#include "tools/common/run/memory.h"
+#include "tools/common/process/memory.h"
 #include "tools/common/stage/scene_options.h"
 #include "tools/estimate/report.h"
 #include "tools/merge/merge.h"

@@ -12,7 +12,7 @@ namespace {
   const uint64_t part = unit % shards.of();
   throw InputError("the shards hold too few VPLs: shard " + std::to_string(part + 1) +
                    " ended early; make it again with more, by " +
-                   shards.commandFor({part, part + 1, shards.of()}, " --shard-spare 0.1"));
+                   shards.commandFor({part, part + 1, shards.of()}, " --shard-spare 0.5"));
 }
 
 // The shares of views as vpl-place records them; a single view has none.

@@ -6,13 +6,25 @@
 
 namespace bnvpl {
 
+namespace {
+
+Film filmOf(const ShardRun& whole) {
+  try {
+    return parseSize(fieldOf<std::string>(fieldOf<Json>(whole.run, "view"), "size"));
+  } catch (const UsageError&) {
+    throw InputError("the shards have a film of a strange size; make them again");
+  }
+}
+
+}  // namespace
+
 std::vector<fs::path> mergeRendered(ShardSet& shards, const MergeOutput& output, OutputSet& files,
                                     Summary& summary) {
   const ShardRun& whole = shards.whole();
   Values options = optionsOf(whole, renderSpec(), resolveRender);
   if (budgetOf(options)) throw InputError("shards of passes cannot be merged; make them again");
   options.set(kExposureOption, output.exposure);
-  const Film film = parseSize(fieldOf<std::string>(fieldOf<Json>(whole.run, "view"), "size"));
+  const Film film = filmOf(whole);
   const auto groups = fieldOf<std::vector<std::string>>(whole.sources, "light_groups");
   requireMemory(bytesPerPixelOf(options, groups.size()) * film.width * film.height,
                 "an image of " + sizeText(film) + " pixels", "choose a smaller --size");

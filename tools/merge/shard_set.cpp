@@ -4,11 +4,17 @@
 #include <tuple>
 
 #include "tools/common/files/shell_text.h"
+#include "tools/common/run/build_id.h"
 #include "tools/common/run/checkpoint.h"
-#include "tools/common/stage/build_id.h"
-#include "tools/common/stage/processor_id.h"
+#include "tools/common/run/processor_id.h"
 
 namespace bnvpl {
+
+namespace {
+
+constexpr size_t kMaxWorks = 64;  // kinds of work; a stage has at most ten
+
+}  // namespace
 
 Processor processorOfShard(const fs::path& file) {
   return processorOf(parseShardInfo(file, ShardReader(file).info()).run.run);
@@ -32,6 +38,8 @@ ShardSet::ShardSet(const std::vector<fs::path>& files) : files_(files) {
 size_t ShardSet::workNamed(std::string_view name) {
   const auto found = std::ranges::find(works_, name);
   if (found != works_.end()) return static_cast<size_t>(found - works_.begin());
+  if (works_.size() == kMaxWorks)
+    throw InputError("the shards hold more kinds of work than a stage has; make them again");
   works_.emplace_back(name);
   return works_.size() - 1;
 }

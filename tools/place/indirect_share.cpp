@@ -28,7 +28,7 @@ struct FilmPoint {
 void addPath(const PlaceInputs& in, Vec3 origin, Vec3 direction, Rng& rng, FilmPoint& point) {
   const SpecularPath path =
       followSpecularPath(in.accel, in.lights, origin, direction, Arrival{}, rng);
-  Vec3 direct = path.emissionFirst + path.directLater, indirect;
+  Vec3 direct = path.firstSegmentEmission + path.lightOverSpecular, indirect;
   if (path.rough) {
     addOutgoingRadiance(in.accel, in.lights, Bsdf(in.accel.scene(), path.hit), path.throughput,
                         {kMaxBounces}, nullptr, rng, direct, indirect);

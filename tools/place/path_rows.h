@@ -31,6 +31,7 @@ struct JoinedRows {
   uint64_t count;
   LastPath last;
   const ViewTurns& turns;
+  bool lit = false;  // whether the rows have flux
 };
 
 // Traces and joins chunks until there are `count` rows. Throws InputError where maxPathsFor(count)

@@ -48,6 +48,12 @@ class ShardTrace {
   // Paths that all shards together have traced when each has as many chunks as this one.
   uint64_t paths() const { return chunks_ / shard().parts() * shard().of * kPathsPerChunk; }
   const PlaceResult& soFar() const { return result_; }
+  // Whether its rows are fewer than chance explains where all shards together find enough.
+  bool hasTooFew() const {
+    const bool whole = shard().parts() == shard().of;
+    const double deviation = whole ? 0.0 : std::sqrt(std::max(squares_, part_));
+    return static_cast<double>(result_.rows) + kDeviations * deviation < part_;
+  }
 
   // Rows still to be found. No shard needs more than the count of the whole.
   double rowsLeft() const {
@@ -96,7 +102,7 @@ PlaceResult traceShard(const std::string& scene, uint64_t count, double spare,
   Wave wave;
   while (trace.rowsLeft() > 0.0) {
     if (trace.paths() >= maxPathsFor(count)) {
-      if (trace.soFar().rows >= trace.rowsOfPart()) break;  // what is left is spare
+      if (!trace.hasTooFew()) break;  // no join needs more; others may have found more
       failTooFew(scene, trace.soFar(), trace.soFar().rows, trace.rowsOfPart());
     }
     traceWave(
@@ -114,8 +120,13 @@ PlaceResult joinShards(const JoinedRows& whole, const ShardSource& source,
   RowJoin joined(whole);
   for (uint64_t unit = 0; !joined.full(); ++unit) {
     const auto bytes = source.record(kWork, unit);
+    if (!bytes && unit * kPathsPerChunk >= maxPathsFor(whole.count))
+      failTooFew("the shards", joined.soFar(), joined.rows(), whole.count);
     if (!bytes) endedEarly(unit);
-    joined.join(decodeRows(*bytes, unit * kPathsPerChunk));
+    PathRows chunk = decodeRows(*bytes, unit * kPathsPerChunk);
+    if (!chunk.rows.position.empty() && chunk.rows.flux.empty() == whole.lit)
+      throw InputError("the rows of a shard are those of another --method; make it again");
+    joined.join(chunk);
   }
   return joined.finish("");
 }
@@ -140,7 +151,7 @@ PathRows decodeRows(std::string_view bytes, uint64_t begin) {
   requireSize(bytes.size() >= sizeof counts);
   takeArray(bytes, counts);
   const auto [size, flux, rays, escaped, absorbed, complete, nonFinite] = counts;
-  requireSize(size <= bytes.size());
+  requireSize(size <= bytes.size() && flux <= 1);
   requireSize(bytes.size() == size * ((flux ? 5 : 3) * sizeof(Vec3) + sizeof(uint16_t)));
   PathRows chunk;
   chunk.rays = rays, chunk.escaped = escaped, chunk.absorbed = absorbed;

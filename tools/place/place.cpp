@@ -42,7 +42,8 @@ PlaceResult joinRows(const Values& options, const ViewTurns& turns, const ShardS
                      const std::function<void(uint64_t unit)>& endedEarly) {
   const PlaceMethod& method = placeMethod(options);
   PlaceResult result =
-      joinShards({options[kPlaceCountOption], method.last, turns}, source, endedEarly);
+      joinShards({options[kPlaceCountOption], method.last, turns, method.makes == VplStage::Lit},
+                 source, endedEarly);
   method.finish(result);
   return result;
 }

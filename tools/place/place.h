@@ -9,8 +9,8 @@
 #include "scene/scene.h"
 #include "tools/common/stage/method.h"
 #include "tools/place/view_turns.h"
-#include "transport/accelerator.h"
-#include "transport/lights.h"
+#include "transport/accelerator/accelerator.h"
+#include "transport/lights/lights.h"
 
 namespace bnvpl {
 

@@ -49,8 +49,8 @@ uint64_t maxPathsFor(uint64_t count) { return kFreePaths + kPathsPerCandidate * 
   throw InputError(scene + ": only " + std::to_string(found) + " of " + std::to_string(count) +
                    " VPLs found on " + std::to_string(r.paths) + " paths: " + percent(r.escaped) +
                    " left the scene, " + percent(r.absorbed) +
-                   " met surfaces that reflect nothing, " + percent(r.complete) +
-                   " were complete; " +
+                   " met surfaces that reflect nothing or stayed among mirrors and glass, " +
+                   percent(r.complete) + " were complete; " +
                    (none ? "point the camera at surfaces that light can bounce to"
                          : "point the camera at lit surfaces or ask for fewer with -n"));
 }

@@ -14,7 +14,7 @@ namespace bnvpl {
 
 // Follows a camera ray to the first rough vertex. Emission that it hits on the way is direct light.
 // `weight`, by the pixel filter, becomes part of the throughput and of all light. `groups`
-// receives the emission by light group.
+// receives emission and direct light by light group.
 inline SpecularPath traceCameraPath(const Accelerator& accel, const LightSet& lights, Vec3 origin,
                                     Vec3 direction, float weight, Rng& rng, RadianceSample& out,
                                     const SpecularLightSampling& specularLights = {},
@@ -24,19 +24,20 @@ inline SpecularPath traceCameraPath(const Accelerator& accel, const LightSet& li
   std::vector<Vec3> waiting(hidesSky ? groups.count : 0);
   SpecularLightSampling sampling = specularLights;
   if (groups.sums) {
-    sampling.emissionFirst = (hidesSky ? sinkTo(waiting) : groups.emission()).times(weight);
-    sampling.directLater = groups.direct().times(weight);
+    sampling.firstSegmentEmission = (hidesSky ? sinkTo(waiting) : groups.emission()).times(weight);
+    sampling.lightOverSpecular = groups.direct().times(weight);
   }
   SpecularPath path =
       followSpecularPath(accel, lights, origin, direction, Arrival{}, rng, sampling);
   if (weight != 1.0f) {
-    for (Vec3* part : {&path.throughput, &path.emissionFirst, &path.directLater}) *part *= weight;
+    for (Vec3* part : {&path.throughput, &path.firstSegmentEmission, &path.lightOverSpecular})
+      *part *= weight;
   }
   const bool sky = path.firstDistance == INFINITY;
-  if (hidesSky && sky) path.emissionFirst = {};
+  if (hidesSky && sky) path.firstSegmentEmission = {};
   for (uint32_t g = 0; !sky && g < waiting.size(); ++g) groups.emission().add(g, waiting[g]);
-  out.emission = path.emissionFirst;
-  out.direct = path.emissionFirst + path.directLater;
+  out.emission = path.firstSegmentEmission;
+  out.direct = path.firstSegmentEmission + path.lightOverSpecular;
   if (path.firstDistance < INFINITY) {
     out.depth = path.firstDistance * dot(direction, accel.scene().camera.forward);
   }

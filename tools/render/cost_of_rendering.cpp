@@ -58,11 +58,11 @@ Cost costOfRendering(const Accelerator& accel, const LightSet& lights, const Vpl
   trial.pixels = uint64_t{film.width} * film.height;
   trial.repeats = double(spp) / double(tried);
   const MemoryWatch memory;
-  const Integrator integrator = makeIntegrator(accel, lights, lit, plain, progress, &trial);
+  const Integrator integrator = makeIntegrator(accel, lights, lit, options, progress, &trial);
   UnitsToTry units;
   units.apart = apart;
   // Photons go in rounds of as many samples as 64 tiles have; some of each round are to be tried.
-  if (integrator.tracePhotons) units.fewest *= 1.0 + 64.0 / double(tried);
+  if (integrator.splatPhotons) units.fewest *= 1.0 + 64.0 / double(tried);
   Cost cost = costOfUnits(
       [&](const WorkControls& controls) {
         renderSamples(accel, integrator, plain, static_cast<uint32_t>(tried), progress, controls);

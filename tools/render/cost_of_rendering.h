@@ -9,7 +9,7 @@ namespace bnvpl {
 // A film that the trial can hold, of the same shape and view.
 Film filmToTry(const Film& film);
 
-// What is asked for.
+// The image that is asked for.
 struct ImageToMake {
   const Film& film;
   const Given& given;     // options as typed

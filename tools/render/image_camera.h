@@ -9,7 +9,7 @@ namespace bnvpl {
 
 ImageCamera imageCameraOf(const Scene& scene);
 
-// To and from JSON, exactly, for shards. Throws InputError for JSON that is no camera.
+// Both convert exactly, for shards. Throws InputError for JSON that is no camera.
 Json toJson(const ImageCamera& camera);
 ImageCamera imageCameraOf(const Json& json);
 

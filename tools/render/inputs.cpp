@@ -6,7 +6,7 @@
 #include "formats/vpl/vpl_io.h"
 #include "tools/common/options/exposure.h"
 #include "tools/common/options/film_size.h"
-#include "tools/common/run/memory.h"
+#include "tools/common/process/memory.h"
 #include "tools/render/integrator/light_in_glass.h"
 #include "tools/render/outputs.h"
 #include "tools/render/stage_options.h"
@@ -17,7 +17,7 @@ namespace {
 
 // Measured with a million VPLs of one emission point each: 1,450 for most gathers and, with the near
 // field and what lights its hits, 2,290. More points take more.
-constexpr double kBytesPerVpl = 1400, kBytesPerVplWithNearField = 2200;
+constexpr double kBytesPerVpl = 1400;
 
 // "--integrator light or path".
 std::string withoutVpls() {
@@ -69,9 +69,9 @@ void requireConsistent(const Values& options, const Given& given, const RenderFi
 
 VplTable readLit(const fs::path& lit, const Values& options, bool predictsCost) {
   if (lit.empty()) return {};
-  const bool nearField = options.has(kCompensateSlot) && options[kCompensateSlot] == "near-field";
+  const CompensateMethod* compensation = compensationOf(options);
   if (!predictsCost) {
-    requireMemoryFor(lit, nearField ? kBytesPerVplWithNearField : kBytesPerVpl,
+    requireMemoryFor(lit, kBytesPerVpl + (compensation ? compensation->bytesPerVpl : 0.0),
                      "keep fewer VPLs with vpl-eliminate -n");
   }
   return readVpl(lit, VplStage::Lit);

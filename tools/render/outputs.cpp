@@ -80,14 +80,14 @@ double bytesPerPixelOf(const Values& options, size_t groups) {
   double bytes = 360;  // measured, as are the others
   if (redistributesFireflies(options)) bytes += 165;
   if (budgetOf(options)) bytes += 76;  // sums over passes
-  const bool photons = integratorOf(options).tracesPhotons;
+  const bool photons = integratorOf(options).splatsPhotons;
   if (photons) bytes += 168;  // exact sums of photons
   if (groups > 0) bytes += 50.0 + double(groups) * (96 + (photons ? 168 : 0));
   return bytes;
 }
 
 ExrPixelType pixelTypeOf(const Values& options) {
-  return options[kPixelsOption] == "half" ? ExrPixelType::Half : ExrPixelType::Float;
+  return options.meet(valueIs(kPixelsOption, "half")) ? ExrPixelType::Half : ExrPixelType::Float;
 }
 
 void addImages(OutputSet& files, const ImagePaths& paths, const Image& image, const Values& options,
@@ -206,7 +206,7 @@ void reportPasses(const PassesDone& passes, const Values& options, Summary& summ
 
 void reportGathered(const RenderResult& result, const Values& options, Summary& summary) {
   const FilmStats& stats = result.stats;
-  const bool shown = options[kOnlyOption] != "direct";
+  const bool shown = options.meet(kIndirectIsShown);
   char line[256];
   std::snprintf(
       line, sizeof line, "indirect light: clamping removed %.2f %%, compensation added %.2f %%",

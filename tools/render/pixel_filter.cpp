@@ -88,6 +88,10 @@ struct PixelFilter::Axis {
     for (const Sign sign : {kPositive, kNegative}) cdf[sign] = makeCdf<float>(cells[sign]);
   }
 
+  // Integral of the filter's absolute value over both axes.
+  float absoluteIntegral() const {
+    return 1.0f / ((1.0f - 2.0f * negative) * (1.0f - 2.0f * negative));
+  }
   // A place relative to the pixel's corner.
   float place(Sign sign, float u) const {
     const size_t cell = sampleCdf<float>(cdf[sign], u);
@@ -103,6 +107,11 @@ PixelFilter::PixelFilter(Kind kind, float radius) {
 
 float PixelFilter::axisRadius() const { return static_cast<float>(axis_->radius); }
 
+float PixelFilter::axisSquaredWeight() const {
+  const float all = axis_->absoluteIntegral();
+  return all * all;
+}
+
 float PixelFilter::density(float x, float y) const {
   if (isPixel()) return std::max(std::abs(x), std::abs(y)) <= 0.5f ? 1.0f : 0.0f;
   return static_cast<float>(valueOf(axis_->kind, double{x}, axis_->radius) *
@@ -117,7 +126,7 @@ PixelFilter::Sample PixelFilter::samplePlaces(Point2 u, const Turn& turn) const 
   const Axis& a = *axis_;
   const float b = a.negative, share = 2.0f * b * (1.0f - b);
   if (!(share > 0.0f)) return {{a.place(Axis::kPositive, u.x), a.place(Axis::kPositive, u.y)}};
-  const float all = 1.0f / ((1.0f - 2.0f * b) * (1.0f - 2.0f * b));
+  const float all = a.absoluteIntegral();
   bool below = false;
   float weight = 0.0f;
   if (turn.count < 2) {

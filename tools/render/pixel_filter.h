@@ -36,6 +36,8 @@ class PixelFilter {
   float radius() const { return isPixel() ? 0.5f : axisRadius(); }
   // Value at a place relative to the pixel's centre, 1/pixel^2; its integral is 1.
   float density(float x, float y) const;
+  // Mean of the squared weights of samples: 1 for filters that are nowhere negative.
+  float squaredWeight() const { return isPixel() ? 1.0f : axisSquaredWeight(); }
   // Maps the unit square to places with a density proportional to |density()|.
   Sample sample(Point2 u, const Turn& turn) const {
     return isPixel() ? Sample{u} : samplePlaces(u, turn);
@@ -45,6 +47,7 @@ class PixelFilter {
  private:
   struct Axis;
   float axisRadius() const;
+  float axisSquaredWeight() const;
   Sample samplePlaces(Point2 u, const Turn& turn) const;
 
   std::shared_ptr<const Axis> axis_;  // the filter along x and along y; null: the pixel's box

@@ -60,19 +60,19 @@ FilmOptions filmOptionsOf(const Values& options) {
 
 // Whether the integrator traces photons for this image.
 bool sendsPhotons(const Values& options) {
-  return integratorOf(options).tracesPhotons && onlyOf(options) != Only::Direct;
+  return integratorOf(options).splatsPhotons && onlyOf(options) != Only::Direct;
 }
 
 // The options that --for-denoiser stands for, spelled out.
 Given withDenoiserOptions(const Given& given) {
   const Values options = resolve(renderSpec(), given);
   if (!options[kForDenoiserOption]) return given;
-  if (const GatherMethod* gather = gatherOf(options); gather && gather->tiesPixels()) {
+  if (const GatherMethod* gather = gatherOf(options); gather && gather->correlatesPixels()) {
     throw UsageError("--for-denoiser: --gather " + options[kGatherSlot] +
                      " gives neighbouring pixels the same noise; choose another gather");
   }
   const CompensateMethod* compensate = compensationOf(options);
-  if (compensate && compensate->sharesPixels) {
+  if (compensate && compensate->correlatesPixels) {
     throw UsageError("--for-denoiser: --compensate " + options[kCompensateSlot] +
                      " shares light between neighbouring pixels; choose another compensation");
   }
@@ -118,8 +118,8 @@ const StageSpec& renderSpec() {
   // Near-field rays also have a part in direct light where each sample is lit itself.
   static const std::string integrators = gathering();
   static const Condition vpls{"integrator", integrators};
-  static const AllOf indirect{vpls, {"only", "all|indirect"}},
-      sampleLit{vpls, {"direct-samples", "1"}};
+  static const AllOf indirect{vpls, kIndirectIsShown},
+      sampleLit{vpls, valueIs(kDirectSamplesOption, "1")};
   static const StageSpec spec{
       "vpl-render",
       stageOptions(),
@@ -207,12 +207,9 @@ std::vector<const Layer*> layersOf(const Values& options) {
 std::vector<std::string> lightGroupsOf(const Values& options, const Scene& scene) {
   const bool wanted = std::ranges::any_of(layersOf(options), &Layer::ofGroups);
   if (!wanted) return {};
-  if (options.has(kGatherSlot)) {
-    const GatherMethod& gather = methodNamed(gatherMethods(), options[kGatherSlot]);
-    if (!gather.lightGroups) {
-      throw UsageError("--layers light_groups: --gather " + std::string(gather.name) +
-                       " does not tell light groups apart; use --gather tilecuts");
-    }
+  if (const GatherMethod* gather = gatherOf(options); gather && !gather->lightGroups) {
+    throw UsageError("--layers light_groups: --gather " + std::string(gather->name) +
+                     " does not tell light groups apart; use --gather tilecuts");
   }
   if (scene.lightGroupCount() > 0) return scene.lightGroups;
   throw InputError(scene.name() +
@@ -269,8 +266,16 @@ RenderResult joinRendered(const Film& film, const Values& options, const ShardSo
   return result;
 }
 
+// Options by which images of passes are prepared: --spp only limits their number, which changes
+// neither what they have in common nor the state of a checkpoint.
+Values preparingOptions(Values options) {
+  if (budgetOf(options)) options.set(kSppOption, static_cast<uint64_t>(kUnlimitedSpp));
+  return options;
+}
+
 Integrator makeIntegrator(const Accelerator& accel, const LightSet& lights, const VplTable& lit,
-                          const Values& options, const ProgressFn& progress, CostTrial* trial) {
+                          const Values& given, const ProgressFn& progress, CostTrial* trial) {
+  const Values options = preparingOptions(given);
   const FilmOptions film = filmOptionsOf(options);
   const IntegratorMethod& method = integratorOf(options);
   const auto groups = static_cast<uint32_t>(lightGroupsOf(options, accel.scene()).size());
@@ -304,7 +309,8 @@ RenderResult render(const Accelerator& accel, const LightSet& lights, const VplT
                     const FilmPreview& preview, double startS) {
   FilmOptions film = filmOptionsOf(options);
   film.crop = cropOf(options, accel.scene().film);
-  film.firstHits = traceFirstHits(accel, film.filter, film.layers, film.seed, options[kSppOption]);
+  film.firstHits = traceFirstHits(accel, film.filter, film.layers, film.seed,
+                                  preparingOptions(options)[kSppOption]);
   film.groups = lightGroupsOf(options, accel.scene());
   const Integrator integrator = makeIntegrator(accel, lights, lit, options, progress);
   if (!budgetOf(options)) {

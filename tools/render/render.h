@@ -6,13 +6,12 @@
 #include "core/progress.h"
 #include "core/work_controls.h"
 #include "formats/image/image.h"
-#include "tools/render/film/passes.h"
+#include "tools/render/film/passes/passes.h"
 #include "tools/render/integrator/integrator.h"
 
 namespace bnvpl {
 
-// Options of the stage: spp, time, target-error, passes, adaptive, seed, only, layers, integrator,
-// gather, compensate, and those of each method.
+// Options of the stage (stage_options.h) and of each method.
 const StageSpec& renderSpec();
 // Values of a run. With --time, --target-error or --passes, --spp is an upper limit if it is given.
 // Throws UsageError.

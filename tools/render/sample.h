@@ -55,6 +55,21 @@ struct RadianceSample {
   Counts counts{};
 };
 
+// The light of a sample that an image shows.
+inline Vec3 shownRadiance(const RadianceSample& sample, Only only) {
+  return (only != Only::Indirect ? sample.direct : Vec3{}) +
+         (only != Only::Direct ? sample.indirect : Vec3{});
+}
+
+// The light of a sample without the weight of the pixel filter, and black where it is no number. A
+// filter with negative lobes gives a fixed number of samples negative weights, which cancel in an
+// evenly lit pixel: their signs are no noise. Times PixelFilter::squaredWeight(), the variance of
+// this light is that of the samples.
+inline Vec3 unweighted(Vec3 light, float weight) {
+  const Vec3 own = light * (1.0f / weight);
+  return isFinite(own) ? own : Vec3{};
+}
+
 // The light of a sample by light group, W/(m2 sr): what RadianceSample has for all lights together.
 struct SampleGroups {
   Vec3* sums = nullptr;  // `count` colours for each kind of light; null: no groups are wanted

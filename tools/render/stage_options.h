@@ -23,17 +23,21 @@ inline constexpr RealOption kTargetErrorOption = unrecorded(optional(
 inline constexpr WholeOption kPassesOption = optional(
     wholeOption("passes", "", kMinPasses, 0x1p40, "",
                 "render this many passes; with --time or --target-error at most this many"));
+inline constexpr Needs kPassesAreMade{isGiven(kTimeOption), isGiven(kTargetErrorOption),
+                                      isGiven(kPassesOption)};
 inline constexpr WholeOption kPassSppOption = optional(neededBy(
-    {Condition{"time"}, Condition{"target-error"}, Condition{"passes"}},
+    kPassesAreMade,
     wholeOption("pass-spp", "", 1, 64, "",
                 "samples per pixel in a pass, on average (default: 4; with --time 2 or 1 where ten "
                 "passes of 4 would not fit)")));
 inline constexpr SwitchOption kAdaptiveOption =
-    neededBy({Condition{"time"}, Condition{"target-error"}, Condition{"passes"}},
+    neededBy(kPassesAreMade,
              switchOption("adaptive", "on",
                           "after the first passes, take more samples where the error is larger"));
 inline constexpr TextOption kOnlyOption = inTopic(
     Topic::Main, choiceOption("only", "all", "all|direct|indirect", "light that the image shows"));
+inline constexpr Condition kIndirectIsShown = valueIs(kOnlyOption, "all|indirect"),
+                           kDirectIsShown = valueIs(kOnlyOption, "all|direct");
 inline constexpr TextOption kSizeOption = unrecorded(inTopic(
     Topic::Main,
     textOption("size", "", "WIDTHxHEIGHT",
@@ -56,8 +60,8 @@ inline constexpr SwitchOption kTransparentOption = inTopic(
 inline constexpr TextOption kCropOption =
     optional(textOption("crop", "", "X0,Y0,X1,Y1",
                         "render only columns X0 to before X1, rows Y0 to before Y1; they count "
-                        "from the upper left pixel, and crops assemble into the whole image; with "
-                        "VPLs it needs --fireflies keep"));
+                        "from the upper left pixel, and crops assemble into the whole image; "
+                        "--integrator vpl needs --fireflies keep for it"));
 inline constexpr SwitchOption kForDenoiserOption = unrecorded(inTopic(
     Topic::Quality,
     switchOption("for-denoiser", "off",

@@ -9,7 +9,7 @@
 namespace bnvpl {
 
 enum TileDimension : uint32_t {
-  // Tile cuts (gather/tilecuts).
+  // Receivers: of tile cuts (gather/tilecuts), and of gathers that handle each alone (gatherEach).
   kDimReceiver = 0,
   kDimVpl = 1,
   kDimStratum = 2,
@@ -17,6 +17,8 @@ enum TileDimension : uint32_t {
   kDimRoulette = 4,
   // Representatives of a pixel's samples (gather/multidimensional).
   kDimReceivers = 18,
+  // Receivers of a slice's clusters (gather/matrix_completion).
+  kDimMatrixPart = 20,
   // Local virtual lights (compensate/local).
   kDimLocalLights = 19,
   // Rays for indirect light from a shading point, and those that sample allocation adds: the first
@@ -24,6 +26,9 @@ enum TileDimension : uint32_t {
   kDimRay = 16,
   kDimMoreRays0 = 5u << 28,
   kDimMoreRays1 = kDimMoreRays0 + 1,
+  // The pilots of sample allocation among these rays, by parity.
+  kDimPilotRays0 = 24,
+  kDimPilotRays1 = kDimPilotRays0 + 1,
   // Camera rays: the specular path of a sample, further rays of a pixel for emission and for the
   // control variate, and camera samples of direct light with their pilots.
   kDimCameraPath = 17,
@@ -42,7 +47,7 @@ inline constexpr std::array kAll{
     kDimReceiver,   kDimVpl,          kDimStratum,     kDimPacket,        kDimRoulette,
     kDimReceivers,  kDimLocalLights,  kDimRay,         kDimMoreRays0,     kDimMoreRays1,
     kDimCameraPath, kDimEmissionRays, kDimControlRays, kDimDirectSamples, kDimDirectPilots,
-    kDimLight,      kDimParity};
+    kDimLight,      kDimParity,       kDimMatrixPart,  kDimPilotRays0,    kDimPilotRays1};
 constexpr bool distinct() {
   for (size_t i = 0; i < kAll.size(); ++i)
     if (std::count(kAll.begin(), kAll.end(), kAll[i]) != 1) return false;

@@ -3,7 +3,7 @@
 
 #include "core/random.h"
 #include "core/sampling.h"
-#include "transport/accelerator.h"
+#include "transport/accelerator/accelerator.h"
 
 namespace bnvpl {
 

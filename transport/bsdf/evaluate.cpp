@@ -66,7 +66,8 @@ Vec3 Bsdf::adjointValue(const Summand& s, Vec3 wi) const {
   float kept = 1.0f;
   if (s.above.weight > 0.0f) {
     const LobeFrame coat = s.above.frame == s.frame ? frame : frameOf(frames_[s.above.frame]);
-    kept = std::min(s.above.through(coat.wo.z), s.above.through(std::fabs(dot(coat.z, point_.wo))));
+    const auto through = [&](Vec3 w) { return s.above.through(std::fabs(dot(coat.z, w))); };
+    kept = std::min(through(wi), through(point_.wo));
   }
   return std::visit(
              [&](const auto& l) { return l.value(frame.wo, light, TransportMode::Radiance); },
@@ -100,7 +101,7 @@ bool Bsdf::sampleDiffuse(TransportMode transport, Point2 at, BsdfSample& out) co
 // their frame's normal and the surface. Frames are bent for the camera's direction (LobeFrame): wo
 // for radiance; for photons it is wi, see adjointValue().
 template <TransportMode transport>
-Bsdf::Evaluated Bsdf::evaluate(LobeGroup group, Vec3 wi, Wanted wanted) const {
+Bsdf::Evaluated Bsdf::evaluate(LobeGroup group, Vec3 wi, Terms terms) const {
   if (group == LobeGroup::Rough && diffuseOnly_) return evaluateDiffuse(transport, wi);
   Evaluated sum;
   constexpr bool photons = transport == TransportMode::Importance;
@@ -129,11 +130,11 @@ Bsdf::Evaluated Bsdf::evaluate(LobeGroup group, Vec3 wi, Wanted wanted) const {
     if (!within) continue;
     std::visit(
         [&](const auto& l) {
-          if (!bentForCamera && wanted != Wanted::OnlyPdf) {
+          if (!bentForCamera && terms != Terms::OnlyPdf) {
             const float cosine = photons ? photonCosine(frame.z, wi) : std::fabs(local.z);
             sum.value += s.weight * l.value(frame.wo, local, transport) * (cosine * coat(s, wi));
           }
-          if (wanted == Wanted::OnlyValue) return;
+          if (terms == Terms::OnlyValue) return;
           const float rest = photons ? 1.0f - cosineShare(s) : 1.0f;
           sum.pdf += s.share * rest * l.pdf(frame.wo, local);
         },
@@ -142,7 +143,7 @@ Bsdf::Evaluated Bsdf::evaluate(LobeGroup group, Vec3 wi, Wanted wanted) const {
   return sum;
 }
 
-template Bsdf::Evaluated Bsdf::evaluate<TransportMode::Radiance>(LobeGroup, Vec3, Wanted) const;
+template Bsdf::Evaluated Bsdf::evaluate<TransportMode::Radiance>(LobeGroup, Vec3, Terms) const;
 
 bool Bsdf::sample(LobeGroup group, TransportMode transport, Rng& rng, BsdfSample& out) const {
   const float pick = rng.next();
@@ -191,8 +192,8 @@ bool Bsdf::sample(LobeGroup group, TransportMode transport, float pick, Point2 a
       out.weight *= photonCosine(frame.z, out.wi) / std::max(1e-6f, std::fabs(drawn.wi.z));
     return !isBlack(out.weight);
   }
-  const Evaluated all = photons ? evaluate<TransportMode::Importance>(group, out.wi, Wanted::Both)
-                                : evaluate<TransportMode::Radiance>(group, out.wi, Wanted::Both);
+  const Evaluated all = photons ? evaluate<TransportMode::Importance>(group, out.wi, Terms::Both)
+                                : evaluate<TransportMode::Radiance>(group, out.wi, Terms::Both);
   if (!(all.pdf > 0.0f)) return false;
   out.pdf = all.pdf;
   out.weight = all.value * (1.0f / all.pdf);

@@ -20,6 +20,12 @@ inline float fresnelDielectric(float cosI, float eta) {
   return fresnelDielectric(cosI, eta, cosT);
 }
 
+// Cosine behind an interface of a direction with the given cosine before it (Snell's law); eta
+// >= 1.
+inline float refractedCosine(float cosI, float eta) {
+  return std::sqrt(std::max(0.0f, 1.0f - (1.0f - cosI * cosI) / (eta * eta)));
+}
+
 // Metal of complex index eta + i k (Lagarde 2013, "Memo on Fresnel equations", after Born & Wolf).
 inline float fresnelConductor(float cosI, float eta, float k) {
   const float cos2 = cosI * cosI, sin2 = 1.0f - cos2, eta2 = eta * eta, k2 = k * k;

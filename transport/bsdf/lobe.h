@@ -69,6 +69,7 @@ class MaterialInputs {
   // The index of a coat, whose tables begin at 1, and of a body, which may be air in water.
   float coatIor(const Scalar& s) const { return std::clamp(raw(s), 1.0f, 100.0f); }
   float ior(const Scalar& s) const { return std::clamp(raw(s), 0.01f, 100.0f); }
+  float thickness(const Scalar& s) const { return std::clamp(raw(s), 0.0f, 100.0f); }
   const SurfacePoint& point() const { return point_; }
   bool front() const { return point_.front; }
   const Scene& scene() const { return scene_; }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "transport/bsdf.h"
+#include "transport/bsdf/ggx/reflection.h"
 
 namespace bnvpl {
 
@@ -56,8 +57,12 @@ MtlModel diffuseMtl(const Scene& scene, const Colour& c) {
   return mtl;
 }
 
-MtlModel metalMtl(const ConductorFresnel& fresnel, float alpha) {
+MtlModel metalMtl(const ConductorFresnel& fresnel, const Roughness& roughness) {
   constexpr float kSmooth = 0.03f, kMaxExponent = 9999.0f;
+  const auto alphaAlong = [&](const Scalar& r) {
+    return alphaOf(roughness.alpha, std::clamp(r.value, 0.0f, 1.0f));
+  };
+  const float alpha = std::sqrt(alphaAlong(roughness.along) * alphaAlong(roughness.across));
   MtlModel mtl;
   const Vec3 albedo = min(atNormalIncidence(fresnel), Vec3(1));
   if (alpha < kSmooth) {

@@ -38,9 +38,9 @@ struct MtlModel {
 };
 MtlModel modelToMtl(const Scene& scene, const MaterialModel& model);
 
-// The nearest to Lambert's law, a metal of roughness alpha, and glass.
+// The nearest to Lambert's law, a metal, and glass.
 MtlModel diffuseMtl(const Scene& scene, const Colour& reflectance);
-MtlModel metalMtl(const ConductorFresnel& fresnel, float alpha);
+MtlModel metalMtl(const ConductorFresnel& fresnel, const Roughness& roughness);
 MtlModel glassMtl(float ior, Vec3 transmission);
 
 }  // namespace bnvpl

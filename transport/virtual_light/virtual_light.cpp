@@ -16,7 +16,7 @@ VplLights makeVplLights(const VplTable& lit, const Accelerator& accel, float cla
   lights.groups = groups.groups;
   lights.kind = kind;
   // Min distance, below which rays cannot tell points apart. It keeps 1/d^2 finite without a clamp.
-  const float nearest = accel.scene().offsetSize() * 0x1p-20f;
+  const float nearest = accel.scene().minRayOffset();
   for (size_t i = 0; i < lit.size(); ++i) {
     if (!(mean(lit.flux[i]) * (1.0f / kPi) > 0.0f)) continue;  // dark, or too faint for floats
     ++lights.vplCount;

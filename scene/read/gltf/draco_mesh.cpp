@@ -6,7 +6,7 @@
 #include <draco/compression/decode.h>
 #pragma GCC diagnostic pop
 
-#include "scene/read/gltf/gltf_document.h"
+#include "scene/read/gltf/document/gltf_document.h"
 
 namespace bnvpl {
 
@@ -40,17 +40,43 @@ std::vector<uint32_t> DracoMesh::indices() const {
   return out;
 }
 
-std::optional<std::vector<double>> DracoMesh::attribute(uint32_t id, size_t components) const {
+namespace {
+
+// The largest integer of a type; 1 for floats.
+double largestOf(draco::DataType type) {
+  switch (type) {
+    case draco::DT_INT8:
+      return 0x7f;
+    case draco::DT_UINT8:
+      return 0xff;
+    case draco::DT_INT16:
+      return 0x7fff;
+    case draco::DT_UINT16:
+      return 0xffff;
+    default:
+      return 1.0;
+  }
+}
+
+}  // namespace
+
+std::optional<std::vector<double>> DracoMesh::attribute(uint32_t id, size_t components,
+                                                        bool normalized) const {
   const draco::Mesh& mesh = *decoded_->mesh;
   const draco::PointAttribute* attribute = mesh.GetAttributeByUniqueId(id);
   if (!attribute || attribute->num_components() != components) return std::nullopt;
   std::vector<double> out(size_t{mesh.num_points()} * components);
   std::vector<float> value(components);
+  const double largest =
+      normalized && !attribute->normalized() ? largestOf(attribute->data_type()) : 1.0;
   for (draco::PointIndex p(0); p < mesh.num_points(); ++p) {
     const draco::AttributeValueIndex at = attribute->mapped_index(p);
     if (at.value() >= attribute->size()) return std::nullopt;
     attribute->ConvertValue<float>(at, static_cast<int8_t>(components), value.data());
-    std::copy(value.begin(), value.end(), &out[size_t{p.value()} * components]);
+    for (size_t c = 0; c < components; ++c) {
+      out[size_t{p.value()} * components + c] =
+          largest > 1.0 ? std::max(-1.0, double{value[c]} / largest) : double{value[c]};
+    }
   }
   return out;
 }

@@ -21,8 +21,10 @@ class DracoMesh {
   DracoMesh& operator=(const DracoMesh&) = delete;
 
   std::vector<uint32_t> indices() const;  // three per triangle
-  // `components` numbers per vertex; nothing if no attribute has this id and size.
-  std::optional<std::vector<double>> attribute(uint32_t id, size_t components) const;
+  // `components` numbers per vertex; nothing if no attribute has this id and size. `normalized`, of
+  // the accessor, divides integers by the largest of their type, whatever the Draco data say.
+  std::optional<std::vector<double>> attribute(uint32_t id, size_t components,
+                                               bool normalized) const;
 
  private:
   struct Decoded;

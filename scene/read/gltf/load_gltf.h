@@ -2,8 +2,8 @@
 // what is read and how.
 #pragma once
 
+#include "scene/builder/scene_builder.h"
 #include "scene/load_scene.h"
-#include "scene/scene_builder.h"
 
 namespace bnvpl {
 

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "scene/read/gltf/gltf_model.h"
+#include "scene/read/gltf/document/gltf_model.h"
 
 namespace bnvpl {
 

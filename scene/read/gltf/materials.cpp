@@ -47,8 +47,7 @@ class MaterialReader {
     m.twoSidedEmission = from_.doubleSided;
     if (from_.extensions.contains("KHR_materials_unlit")) {
       m.model = DiffuseModel{Colour(Vec3(0))};
-      m.emission = factor;
-      m.emissionTexture = baseColour.texture;
+      setEmission(m, factor, base, baseColour.texture);
       warn("unlit: it emits its base colour as radiance and reflects nothing");
     } else {
       m.model = metallicRoughness(baseColour);
@@ -106,9 +105,17 @@ class MaterialReader {
   void addEmission(Material& m) {
     const double strength =
         gltfNumber(extensionOf(from_, "KHR_materials_emissive_strength"), "emissiveStrength", 1.0);
-    m.emission = colourOf(from_.emissiveFactor) * real(strength);
-    if (isBlack(m.emission)) return;
-    m.emissionTexture = textures_.colour(GltfTextureRef(from_.emissiveTexture));
+    const Vec3 colour = colourOf(from_.emissiveFactor) * real(strength);
+    if (isBlack(colour)) return;
+    const GltfTextureRef image(from_.emissiveTexture);
+    setEmission(m, colour, image, textures_.colour(image));
+  }
+  // Without its texture, the plain colour would shine where the texture is dark.
+  void setEmission(Material& m, Vec3 colour, const GltfTextureRef& image, uint32_t expression) {
+    const bool lost = image.texture >= 0 && expression == kNone;
+    m.emission = lost ? Vec3{} : colour;
+    m.emissionTexture = expression;
+    if (lost) warn("it does not shine, as the texture of its emission cannot be used");
   }
 
   void addAlpha(Material& m, const GltfTextureRef& base) {

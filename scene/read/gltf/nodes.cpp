@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "scene/read/gltf/accessors.h"
+#include "scene/read/gltf/document/accessors.h"
 
 namespace bnvpl {
 

@@ -1,7 +1,7 @@
 // The node tree of a glTF, flattened.
 #pragma once
 
-#include "scene/read/gltf/gltf_model.h"
+#include "scene/read/gltf/document/gltf_model.h"
 
 namespace bnvpl {
 

@@ -3,7 +3,7 @@
 #include <numeric>
 #include <optional>
 
-#include "scene/read/gltf/accessors.h"
+#include "scene/read/gltf/document/accessors.h"
 #include "scene/read/gltf/draco_mesh.h"
 
 namespace bnvpl {
@@ -30,7 +30,8 @@ class PrimitiveData {
     if (it == primitive_.attributes.end()) return {};
     if (draco_ && dracoIds_->Has(name)) {
       const auto id = static_cast<uint32_t>(dracoIds_->Get(name).GetNumberAsInt());
-      if (auto values = draco_->attribute(id, components)) return *std::move(values);
+      const bool normalized = model_.parts().accessors[static_cast<size_t>(it->second)].normalized;
+      if (auto values = draco_->attribute(id, components, normalized)) return *std::move(values);
       model_.fail(pointer_, "the Draco data have no " + name + "; export the file again");
     }
     return readNumbers(model_, it->second, components);
@@ -85,8 +86,9 @@ void morph(const GltfModel& model, const tinygltf::Primitive& primitive, const s
   }
 }
 
-// Transforms vertices by their joints (glTF 2.0, 3.7.3.3), up to eight per vertex.
-void applySkin(const GltfModel& model, const PrimitiveData& data, std::span<const Affine> joints,
+// Transforms vertices by their joints (glTF 2.0, 3.7.3.3), up to eight per vertex. Returns whether
+// the first one's transform mirrors, which turns the triangles over.
+bool applySkin(const GltfModel& model, const PrimitiveData& data, std::span<const Affine> joints,
                GltfPrimitive& out) {
   const size_t vertices = out.positions.size() / 3;
   std::vector<double> numbers = data.numbers("JOINTS_0", 4), weights = data.numbers("WEIGHTS_0", 4);
@@ -96,6 +98,7 @@ void applySkin(const GltfModel& model, const PrimitiveData& data, std::span<cons
   if (numbers.size() != 4 * vertices || weights.size() != 4 * vertices ||
       (eight && (more.size() != 4 * vertices || weightsOfMore.size() != 4 * vertices)))
     model.fail(out.pointer, "has no four JOINTS and WEIGHTS a vertex, though its node has a skin");
+  bool mirrors = false;
   for (size_t v = 0; v < vertices; ++v) {
     std::array<double, 8> joint{}, weight{};
     for (size_t k = 0; k < (eight ? 8u : 4u); ++k) {
@@ -110,11 +113,13 @@ void applySkin(const GltfModel& model, const PrimitiveData& data, std::span<cons
     };
     at(out.positions, [&](const FilePoint& p) { return m.point(p); });
     const double side = m.determinant() < 0.0 ? -1.0 : 1.0;
+    if (v == 0) mirrors = side < 0.0;
     at(out.normals, [&](const FilePoint& n) {
       const FilePoint turned = m.cofactors(n);
       return FilePoint{side * turned[0], side * turned[1], side * turned[2]};
     });
   }
+  return mirrors;
 }
 
 std::optional<GltfPrimitive> readPrimitive(const GltfModel& model,
@@ -141,7 +146,7 @@ std::optional<GltfPrimitive> readPrimitive(const GltfModel& model,
 
   morph(model, primitive, pointer, "POSITION", pose.morphWeights, out.positions);
   morph(model, primitive, pointer, "NORMAL", pose.morphWeights, out.normals);
-  if (!pose.joints.empty()) applySkin(model, data, pose.joints, out);
+  const bool mirrors = !pose.joints.empty() && applySkin(model, data, pose.joints, out);
 
   const GltfSurface& surface =
       surfaces[primitive.material < 0 ? surfaces.size() - 1
@@ -155,7 +160,7 @@ std::optional<GltfPrimitive> readPrimitive(const GltfModel& model,
 
   const std::vector<uint32_t> indices = data.indices(vertices);
   forEachTriangle(data.mode(), indices, [&](uint32_t a, uint32_t b, uint32_t c) {
-    const std::array<uint32_t, 3> corners{a, b, c};
+    const std::array<uint32_t, 3> corners{a, mirrors ? c : b, mirrors ? b : c};
     out.triangles.push_back({corners, flat ? kNoCorners : corners,
                              out.uvs.empty() ? kNoCorners : corners, surface.material});
   });

@@ -5,7 +5,7 @@
 
 #include "core/files.h"
 #include "core/read_file.h"
-#include "scene/read/obj/load_materials.h"
+#include "scene/read/obj/mtl/load_materials.h"
 #include "scene/read/obj/read_obj.h"
 #include "scene/triangulate.h"
 

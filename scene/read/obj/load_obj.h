@@ -1,8 +1,8 @@
 // Reads OBJ and MTL files into the meshes, materials and textures of a scene.
 #pragma once
 
+#include "scene/builder/scene_builder.h"
 #include "scene/load_scene.h"
-#include "scene/scene_builder.h"
 
 namespace bnvpl {
 

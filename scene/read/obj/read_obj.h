@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/errors.h"
-#include "scene/read/obj/material_libraries.h"
+#include "scene/read/obj/mtl/material_libraries.h"
 #include "scene/read/obj/obj_lines.h"
 
 namespace bnvpl {

@@ -1,8 +1,8 @@
 // Turns a Description into a scene: interprets types and parameters.
 #pragma once
 
+#include "scene/builder/scene_builder.h"
 #include "scene/read/pbrt/syntax/description.h"
-#include "scene/scene_builder.h"
 
 namespace bnvpl::pbrt {
 

@@ -1,8 +1,8 @@
 // Converts the film and camera of a pbrt file.
 #pragma once
 
+#include "scene/builder/scene_builder.h"
 #include "scene/read/pbrt/colors/colors.h"
-#include "scene/scene_builder.h"
 
 namespace bnvpl::pbrt {
 

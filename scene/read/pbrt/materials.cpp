@@ -11,6 +11,8 @@ namespace bnvpl::pbrt {
 namespace {
 
 constexpr size_t kDeepestMix = 16;
+constexpr float kCoatThickness = 0.01f;  // pbrt's default
+constexpr float kMaxThickness = 100.0f;  // that of MaterialInputs::thickness()
 
 bool isInterface(const std::string& type) {
   return type == "interface" || type == "none" || type.empty();
@@ -108,6 +110,7 @@ std::optional<MaterialModel> Materials::Maker::modelOf(const Entity& e) {
     m.reflectance = textures_.colour(p, "reflectance", Vec3{0.5f});
     m.ior = Scalar(float(r_.colors.coatIor(p, "eta", 1.5)));
     m.roughness = roughness(p);
+    m.thickness = textures_.scalar(p, "thickness", kCoatThickness, kMaxThickness);
     return m;
   }
   r_.notes.add(e.place, "material '" + e.type + "' is not read; what has it is diffuse");
@@ -171,6 +174,7 @@ MaterialModel Materials::Maker::coatedConductor(const Entity& e) {
   m.roughness = roughness(p, "conductor.");
   m.coatIor = Scalar(float(r_.colors.coatIor(p, "interface.eta", 1.5)));
   m.coatRoughness = roughness(p, "interface.");
+  m.coatThickness = textures_.scalar(p, "thickness", kCoatThickness, kMaxThickness);
   return m;
 }
 
@@ -192,15 +196,14 @@ MaterialModel Materials::Maker::diffuseTransmission(const Entity& e) {
   return m;
 }
 
-// Ignores the medium between coat and base. With albedo 0 it only absorbs: pbrt multiplies by
-// exp(-thickness / |cos|) at each crossing, with 0.01 as default thickness.
+// Ignores what scatters between coat and base; the coat's thickness absorbs.
 void Materials::Maker::ignoreMedium(const Entity& e) {
   const Param* albedo = e.params.find("albedo");
   if (albedo && !(albedo->type != ParamType::Texture && isBlack(r_.colors.unbounded(*albedo)))) {
     r_.notes.add(albedo->place,
                  "the medium between coat and base ('albedo') is not rendered: the coat is clear");
   }
-  e.params.ignore({"thickness", "g", "maxdepth", "nsamples"});
+  e.params.ignore({"g", "maxdepth", "nsamples"});
 }
 
 uint32_t Materials::Maker::componentOf(const std::string& name, const Place& place) {
@@ -249,7 +252,8 @@ void Materials::Maker::setAlpha(const Shape& shape, Material& m) {
   if (alpha->type != ParamType::Texture) {
     m.opacity = textures_.scalar(shape.params, "alpha", 1.0f).value;
   } else if (const auto mask = textures_.mask(shape.params, "alpha")) {
-    m.opacityMap = *mask;
+    m.opacityMap = mask->image;
+    m.opacityCutoff = mask->cutoff;
     return;
   } else {
     m.opacityTexture = textures_.floatTexture(shape.params, "alpha");
@@ -286,7 +290,11 @@ uint32_t Materials::Maker::of(const Shape& shape, const ShapeEmission& emission)
   if (shines) m = *replacement;
   m.emission = e;
   m.twoSidedEmission = emission.twoSided;
-  if (!emission.image.empty()) m.emissionTexture = textures_.image(emission.image, true);
+  if (!emission.image.empty()) {
+    m.emissionTexture =
+        textures_.image(emission.image, true, Wrap::Clamp, "the lamp does not shine");
+    if (m.emissionTexture == kNone) m.emission = {};
+  }
   if (shines) return numbers_[key] = builder_.addOwnMaterial(std::move(m));
   setAlpha(shape, m);
   return numbers_[key] = builder_.addMaterial(std::move(m));

@@ -11,7 +11,8 @@ namespace bnvpl::pbrt {
 std::array<double, 2> squareOf(const FilePoint& direction);
 
 // Resamples a square image to a latitude-longitude image of world directions
-// (transport/light_shape.h) of equal height. The mean over the sphere is kept in each channel.
+// (transport/lights/light_shape.h) of equal height. The mean over the sphere is kept in each
+// channel.
 EnvironmentImage latLongOf(const EnvironmentImage& square, const Affine& lightFromWorld);
 
 }  // namespace bnvpl::pbrt

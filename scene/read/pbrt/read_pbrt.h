@@ -1,8 +1,8 @@
 // Reads scene files of pbrt-v4. docs/scenes.md says what is read and how.
 #pragma once
 
+#include "scene/builder/scene_builder.h"
 #include "scene/load_scene.h"
-#include "scene/scene_builder.h"
 
 namespace bnvpl {
 

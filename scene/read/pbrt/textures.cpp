@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "core/files.h"
+#include "formats/image/tonemap.h"
+
 namespace bnvpl::pbrt {
 
 namespace {
@@ -12,6 +15,12 @@ float one(const Param& p, float most, Notes& notes) {
   if (p.numbers.size() != 1) failAt(p.place, "'" + p.name + "' must be one number or a texture");
   noteClamped(p, double{most}, notes);
   return std::clamp(float(p.numbers[0]), 0.0f, most);
+}
+
+// Whether an image of this name holds floats, whose values are linear.
+bool holdsFloats(const fs::path& file) {
+  const std::string extension = lowerExtension(file);
+  return extension == ".exr" || extension == ".hdr" || extension == ".pfm";
 }
 
 }  // namespace
@@ -70,7 +79,7 @@ uint32_t Textures::floatTexture(const Params& params, const std::string& name) {
   return p && p->type == ParamType::Texture ? named(*p, false) : kNone;
 }
 
-std::optional<uint32_t> Textures::mask(const Params& params, const std::string& name) {
+std::optional<Textures::Mask> Textures::mask(const Params& params, const std::string& name) {
   const Param* p = params.find(name);
   const TextureEntity* t = p ? find(*p, false) : nullptr;
   if (!t || t->type != "imagemap" || t->params.boolean("invert", false)) return std::nullopt;
@@ -83,15 +92,21 @@ std::optional<uint32_t> Textures::mask(const Params& params, const std::string& 
   use->scale = {uv.a, uv.e};
   use->offset = {uv.c, uv.f};
   masks_.insert(t);
-  return builder_.addTexture(*use, {SceneBuilder::kNoHoles, t->place.text() + ": "});
+  // pbrt decodes alpha as it does colours, and the mask holds it as in the file.
+  const bool encoded = use->srgb && !holdsFloats(use->file);
+  return Mask{builder_.addTexture(*use, {SceneBuilder::kNoHoles, t->place.text() + ": "}),
+              encoded ? encodeSrgb(0.5f) : 0.5f};
 }
 
-uint32_t Textures::image(const fs::path& file, bool srgb) {
+uint32_t Textures::image(const fs::path& file, bool srgb, Wrap wrap, const char* otherwise) {
   TextureUse use;
   use.file = file;
   use.srgb = srgb;
-  const uint32_t texture = builder_.addTexture(use);
-  return texture == kNone ? kNone : builder_.addExpression(imageExpression(texture));
+  const uint32_t texture = builder_.addTexture(use, {otherwise});
+  if (texture == kNone) return kNone;
+  TextureExpression e = imageExpression(texture);
+  e.wrapU = e.wrapV = wrap;
+  return builder_.addExpression(e);
 }
 
 uint32_t Textures::constantOf(const Param& p, bool isSpectrum) {
@@ -140,9 +155,14 @@ std::optional<TextureUse> Textures::imageUse(const TextureEntity& t) {
   TextureUse use;
   use.file = (folder_ / name).lexically_normal();
   const std::string encoding = t.params.text("encoding", "sRGB");
-  use.srgb = encoding != "linear";
-  if (encoding.starts_with("gamma"))
-    notes_.add(*t.params.placeOf("encoding"), "the encoding '" + encoding + "' is taken as sRGB");
+  // pbrt reads the encoding of PNGs alone; other images of 8 bits are sRGB.
+  const bool others = !holdsFloats(use.file) && lowerExtension(use.file) != ".png";
+  use.srgb = encoding != "linear" || others;
+  if (encoding.starts_with("gamma") || (encoding == "linear" && others)) {
+    notes_.add(*t.params.placeOf("encoding"),
+               "the encoding '" + encoding + "' is taken as sRGB" +
+                   (encoding == "linear" ? ", as in pbrt, which heeds it for PNG only" : ""));
+  }
   t.params.ignore({"filter", "maxanisotropy"});
   return use;
 }
@@ -159,7 +179,7 @@ uint32_t Textures::imagemap(const TextureEntity& t) {
   e.value = Vec3{float(t.params.number("scale", 1.0))};
   e.invert = t.params.boolean("invert", false);
   e.uv = mapping(t);
-  return builder_.addGreyableImage(*use, e, !t.isSpectrum, t.place.text() + ": ");
+  return builder_.addFallbackImage(*use, e, !t.isSpectrum, t.place.text() + ": ");
 }
 
 UvTransform Textures::mapping(const TextureEntity& t) {

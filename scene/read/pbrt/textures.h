@@ -3,8 +3,8 @@
 
 #include <set>
 
+#include "scene/builder/scene_builder.h"
 #include "scene/read/pbrt/colors/colors.h"
-#include "scene/scene_builder.h"
 
 namespace bnvpl::pbrt {
 
@@ -28,9 +28,15 @@ class Textures {
   uint32_t floatTexture(const Params& params, const std::string& name);
   // A float texture as a mask, which takes the alpha channel of an image that has one. Nothing if
   // the texture is not simply an image.
-  std::optional<uint32_t> mask(const Params& params, const std::string& name);
-  // An image over unmodified texture coordinates; kNone if the file does not exist.
-  uint32_t image(const fs::path& file, bool srgb);
+  struct Mask {
+    uint32_t image;  // into Scene::textures
+    float cutoff;    // value of the mask from which the surface is there
+  };
+  std::optional<Mask> mask(const Params& params, const std::string& name);
+  // An image over unmodified texture coordinates; kNone if the file does not exist, for which the
+  // warning says `otherwise`.
+  uint32_t image(const fs::path& file, bool srgb, Wrap wrap = Wrap::Repeat,
+                 const char* otherwise = SceneBuilder::kPlainColour);
 
   void noteUnused() const;
 

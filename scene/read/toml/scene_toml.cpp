@@ -14,7 +14,7 @@ namespace {
 void setView(const fs::path& file, const toml::table& root, size_t first, SceneBuilder& builder) {
   const std::vector<View>& views = builder.views();
   const bool others = views.size() > first;
-  const bool mirrored = others && isMirrored(views[first].camera);
+  const bool mirrored = others && views[first].camera.isMirrored();
   const TomlView view = readTomlView(file, root, mirrored);
   if (view.camera) {
     const Film film = others ? views[first].film : builder.film();

@@ -1,8 +1,8 @@
 // Reads a scene.toml with the meshes and images that it names. docs/scene-format.md describes it.
 #pragma once
 
+#include "scene/builder/scene_builder.h"
 #include "scene/load_scene.h"
-#include "scene/scene_builder.h"
 
 namespace bnvpl {
 

@@ -1,8 +1,8 @@
 // [[light]] of a scene.toml.
 #pragma once
 
+#include "scene/builder/scene_builder.h"
 #include "scene/read/toml/toml_file_names.h"
-#include "scene/scene_builder.h"
 
 namespace bnvpl {
 

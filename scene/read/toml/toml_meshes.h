@@ -1,8 +1,8 @@
 // [[mesh]] of a scene.toml: an OBJ, or all of another scene file.
 #pragma once
 
+#include "scene/builder/scene_builder.h"
 #include "scene/read/toml/toml_file_names.h"
-#include "scene/scene_builder.h"
 
 namespace bnvpl {
 

@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "core/number_text.h"
-#include "scene/material_inputs.h"
+#include "scene/visit_material.h"
 
 namespace bnvpl {
 
@@ -19,7 +19,7 @@ template <typename Model>
 std::optional<Range> rangeOf(std::string_view key, float value) {
   if (key == "anisotropy_turns") return std::nullopt;
   if (key == "specular_colour") return Range{0.0f, static_cast<float>(TomlSection::kMaxMagnitude)};
-  if (key == "eta" || key == "k") return Range{0.0f, 100.0f};
+  if (key == "eta" || key == "k" || key.ends_with("thickness")) return Range{0.0f, 100.0f};
   if (key == "coat_ior") return Range{1.0f, 100.0f};
   if (key != "ior") return Range{};
   if constexpr (std::same_as<Model, DielectricModel>) return Range{0.01f, 100.0f};

@@ -1,8 +1,8 @@
 // Numbers of a [[material]] that its model cannot use.
 #pragma once
 
+#include "scene/builder/scene_builder.h"
 #include "scene/read/toml/toml_section.h"
-#include "scene/scene_builder.h"
 
 namespace bnvpl {
 

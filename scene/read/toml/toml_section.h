@@ -54,7 +54,7 @@ class TomlSection {
   // A text without control characters, with slashes for backslashes.
   std::string fileName(const char* key) const;
   std::array<float, 2> pair(const char* key, double upper) const;  // magnitudes up to `upper`
-  FilePoint place(const char* key) const { return triple(key, -kFurthestPlace, kFurthestPlace); }
+  FilePoint place(const char* key) const { return triple(key, -kMaxCoordinate, kMaxCoordinate); }
   bool flag(const char* key, bool otherwise) const;
   // Index of the text in `names`.
   uint32_t choice(const char* key, std::span<const char* const> names) const;

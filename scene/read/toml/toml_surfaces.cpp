@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <optional>
 
-#include "scene/material_inputs.h"
 #include "scene/read/toml/toml_ranges.h"
+#include "scene/visit_material.h"
 
 namespace bnvpl {
 

@@ -4,8 +4,8 @@
 #include <map>
 #include <set>
 
+#include "scene/builder/scene_builder.h"
 #include "scene/read/toml/toml_file_names.h"
-#include "scene/scene_builder.h"
 
 namespace bnvpl {
 

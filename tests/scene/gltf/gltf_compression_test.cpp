@@ -60,12 +60,13 @@ std::string dracoFan(const std::vector<float>& corners) {
   return {buffer.data(), buffer.size()};
 }
 
-Gltf dracoGltf(const std::string& data, const std::vector<float>& corners, int mode = 4) {
+Gltf dracoGltf(const std::string& data, const std::vector<float>& corners, int mode = 4,
+               const std::string& component = "5126") {
   Gltf g;
   const std::string count = std::to_string(corners.size() / 3);
   const size_t view = g.addView(data);
-  g.add("accessors", "{\"componentType\":5126,\"count\":" + count + ",\"type\":\"VEC3\"" +
-                         bounds(floats(corners)) + "}");
+  g.add("accessors", "{\"componentType\":" + component + ",\"count\":" + count +
+                         ",\"type\":\"VEC3\"" + bounds(floats(corners)) + "}");
   g.add("accessors", "{\"componentType\":5123,\"count\":" + count + ",\"type\":\"SCALAR\"}");
   g.addMesh("{\"attributes\":{\"POSITION\":0},\"indices\":1,\"mode\":" + std::to_string(mode) +
             ",\"extensions\":{\"KHR_draco_mesh_compression\":{\"bufferView\":" +
@@ -85,6 +86,24 @@ TEST_F(GltfCompression, DecodesDraco) {
   const std::string half = data.substr(0, data.size() / 2);
   EXPECT_NE(loadError(dracoGltf(half, kCorner)).find("the Draco data are damaged"),
             std::string::npos);
+}
+
+// Encoders store normalised integers as plain ones, and leave the accessor to say what they are.
+TEST_F(GltfCompression, NormalizedIsWhatTheAccessorOfDracoSays) {
+  draco::Mesh mesh;
+  draco::GeometryAttribute positions;
+  positions.Init(draco::GeometryAttribute::POSITION, nullptr, 3, draco::DT_UINT8, false, 3, 0);
+  mesh.set_num_points(3);
+  const int id = mesh.AddAttribute(positions, true, 3);
+  const std::array<std::array<uint8_t, 3>, 3> corners{{{0, 0, 0}, {255, 0, 0}, {0, 255, 0}}};
+  for (uint32_t i = 0; i < 3; ++i)
+    mesh.attribute(id)->SetAttributeValue(draco::AttributeValueIndex(i), corners[i].data());
+  mesh.AddFace({draco::PointIndex(0), draco::PointIndex(1), draco::PointIndex(2)});
+  draco::EncoderBuffer buffer;
+  EXPECT_TRUE(draco::Encoder().EncodeMeshToBuffer(mesh, &buffer).ok());
+  Gltf g = dracoGltf({buffer.data(), buffer.size()}, kCorner, 4, "5121,\"normalized\":true");
+  g.more = ",\"extensionsRequired\":[\"KHR_draco_mesh_compression\",\"KHR_mesh_quantization\"]";
+  EXPECT_NEAR(areaOf(load(g), 0), 0.5, 1e-4);
 }
 
 TEST_F(GltfCompression, ADracoMeshOfAStripIsAListOfTriangles) {

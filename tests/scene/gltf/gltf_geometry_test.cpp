@@ -1,5 +1,5 @@
 
-#include "scene/scene_builder.h"
+#include "scene/builder/scene_builder.h"
 #include "tests/scene/gltf/gltf_files.h"
 #include "tests/support/world_triangles.h"
 
@@ -221,6 +221,25 @@ TEST_F(GltfGeometry, JointsPlaceASkinnedMesh) {
   g.add("nodes", "{\"translation\":[0,0,0]}");
   g.show("{\"children\":[1,2]}");
   expectCorners(load(g), 0, {Vec3{0, 0, 2}, Vec3{1, 0, 2}, Vec3{0, 1, 1}});
+}
+
+// A mirroring joint turns the triangles over, as a mirroring node does.
+TEST_F(GltfGeometry, AMirroredSkinKeepsItsOutside) {
+  Gltf node = cornerGltf();
+  node.addMesh("{\"attributes\":{\"POSITION\":0}}");
+  node.show("{\"mesh\":0,\"scale\":[-1,1,1]}");
+  Gltf skin = cornerGltf();
+  const size_t joints = skin.addAccessor(bytesOf(std::vector<uint8_t>(12, 0)), 3, "VEC4", 5121);
+  const size_t weights = skin.addAccessor(floats({1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}), 3, "VEC4");
+  skin.addMesh("{\"attributes\":{\"POSITION\":0,\"JOINTS_0\":" + std::to_string(joints) +
+               ",\"WEIGHTS_0\":" + std::to_string(weights) + "}}");
+  skin.add("skins", "{\"joints\":[1]}");
+  skin.show("{\"mesh\":0,\"skin\":0}");
+  skin.add("nodes", "{\"scale\":[-1,1,1]}");
+  skin.show("{\"children\":[1]}");
+  const float expected = geometricNormal(load(node), 0).z;
+  EXPECT_NEAR(std::fabs(expected), 1.0f, 1e-5f);
+  EXPECT_EQ(geometricNormal(load(skin), 0).z, expected);
 }
 
 TEST_F(GltfGeometry, MorphTargetsHaveTheirWeights) {

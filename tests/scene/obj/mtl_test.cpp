@@ -121,6 +121,9 @@ TEST_F(Mtl, MapsReplaceFactorsThatAreNotThere) {
 
 TEST_F(Mtl, EmissionMapScalesKe) {
   writeImage("half.tga", {255, 255, 255, 255}, {0, 0, 0, 255});
+  const Scene gone = paint("newmtl paint\nKd 0.5 0.5 0.5\nKe 4 4 4\nmap_Ke gone.tga\n");
+  EXPECT_TRUE(isBlack(gone.materials.at(gone.triangles[0].material).emission));
+  EXPECT_EQ(countContaining(gone.warnings, "does not shine"), 1u);
   const Scene s = paint("newmtl paint\nKd 0.5 0.5 0.5\nKe 4 4 4\nmap_Ke half.tga\n");
   EXPECT_NEAR(s.emissionAt(of(s), 0.25f, 0.5f).x, 4.0f, 1e-4f);
   EXPECT_NEAR(s.emissionAt(of(s), 0.75f, 0.5f).x, 0.0f, 1e-4f);

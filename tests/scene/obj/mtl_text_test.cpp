@@ -1,8 +1,8 @@
 // Forms of MTL: colours, options of maps, upper-case keys. Errors in OBJ and MTL files are reported
 // with their line.
-#include "scene/read/obj/mtl_text.h"
+#include "scene/read/obj/mtl/mtl_text.h"
 
-#include "scene/read/obj/map_options.h"
+#include "scene/read/obj/mtl/map_options.h"
 #include "tests/scene/scene_files.h"
 
 namespace bnvpl {
@@ -170,6 +170,9 @@ TEST_F(MtlForms, ScaleAndOffsetActOnTheTexture) {
     EXPECT_NEAR(s.textures[0].lookup(0.0f, 0.5f).x, 1.0f, 1e-6f);
     EXPECT_NEAR(s.textures[0].lookup(0.25f, 0.5f).x, 0.0f, 1e-6f);
   }
+  const Scene two = paint("Kd 1 1 1\nmap_Kd -s 4e-7 4e-7 my t.tga\nmap_Ks -s 3e-7 3e-7 my t.tga\n");
+  ASSERT_EQ(two.textures.size(), 2u) << "of small scales";
+  EXPECT_NE(two.textures[0].scale, two.textures[1].scale);
   const Scene clamped = paint("Kd 1 1 1\nmap_Kd -clamp on my t.tga\nmap_Ks -clamp on my t.tga\n");
   EXPECT_EQ(countContaining(clamped.warnings, "map_Kd: option -clamp on is not supported"), 1u);
 }

@@ -4,7 +4,7 @@
 
 #include "scene/read/pbrt/octahedral.h"
 #include "tests/scene/pbrt/pbrt_files.h"
-#include "transport/light_shape.h"
+#include "transport/lights/light_shape.h"
 
 namespace bnvpl {
 namespace {
@@ -151,6 +151,28 @@ TEST_F(PbrtLights, EnvironmentImagesLookTheSameWayAndKeepTheirLight) {
   write("wide.pfm", "PF\n2 1\n-1\n" + std::string(24, '\0'));
   expectError("WorldBegin LightSource \"infinite\" \"string filename\" \"wide.pfm\"", "1:35",
               {"2 x 1", "makeequiarea"});
+}
+
+// A sun of one texel has its power, and the sky around it its own.
+TEST_F(PbrtLights, SunsOfOneTexelLeaveTheSkyAsItIs) {
+  constexpr uint32_t kSide = 64;
+  constexpr float kSun = 1e5f;
+  for (const uint32_t at : {700u, 2080u, 3333u}) {
+    std::vector<Vec3> square(kSide * kSide, Vec3{1.0f});
+    square[at] = Vec3{kSun};
+    write("sky.pfm", pfm(kSide, square));
+    const Scene s = loadWorld("LightSource \"infinite\" \"string filename\" \"sky.pfm\"\n");
+    const EnvironmentImage& image = s.environments.at(0);
+    double sun = 0.0;
+    for (uint32_t i = 0; i < image.radiance.size(); ++i) {
+      const double part = double(image.radiance[i].x);
+      if (part > 2.0)
+        sun += part * double(texelSolidAngle(image, i / image.width));
+      else
+        EXPECT_NEAR(part, 1.0, 1e-3);
+    }
+    EXPECT_NEAR(sun, 4.0 * std::numbers::pi * double(kSun) / (kSide * kSide), 0.002 * sun);
+  }
 }
 
 // Images resampled by other programs have such values.

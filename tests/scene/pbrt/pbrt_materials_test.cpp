@@ -40,9 +40,11 @@ TEST_F(PbrtMaterials, Roughness) {
   EXPECT_EQ(m.roughness.across.value, 0.4f);
   EXPECT_EQ(m.roughness.alpha, Roughness::Alpha::Same);
   EXPECT_EQ(m.ior.value, 1.3f);
+  EXPECT_EQ(m.thickness.value, 0.1f);
   const auto smooth = model<CoatedDiffuseModel>("Material \"coateddiffuse\"");
   EXPECT_EQ(smooth.roughness.along.value, 0.0f);
   EXPECT_EQ(smooth.roughness.alpha, Roughness::Alpha::Root);
+  EXPECT_EQ(smooth.thickness.value, 0.01f);
   const auto fog = loadWorld("Material \"coateddiffuse\" \"rgb albedo\" [1 1 1]\n");
   EXPECT_EQ(countContaining(fog.warnings, "'albedo'"), 1u);
 }
@@ -183,6 +185,32 @@ TEST_F(PbrtMaterials, ConstantTexturesNeedNoTextureCoordinates) {
   expectNear(m.reflectance.value, {0.2f, 0.4f, 0.6f}, 1e-3f);
 }
 
+TEST_F(PbrtMaterials, EncodingsAreHeededForPngOnly) {
+  const auto decoded = [&](const std::string& encoding) {
+    const Scene s =
+        loadWorld("Texture \"a\" \"spectrum\" \"imagemap\" \"string filename\" \"t.tga\" " +
+                  encoding + "\nMaterial \"diffuse\" \"texture reflectance\" \"a\"\n");
+    EXPECT_EQ(countContaining(s.warnings, "heeds it for PNG only"), encoding.empty() ? 0u : 1u);
+    return s.textures.at(0).srgb;
+  };
+  EXPECT_TRUE(decoded(""));
+  EXPECT_TRUE(decoded("\"string encoding\" \"linear\""));
+}
+
+// A mostly dark image without its file would be a lamp all over.
+TEST_F(PbrtMaterials, ImagesOfLampsAreClampedAndNeeded) {
+  const auto lamp = [&](const std::string& file) {
+    return loadWorld("AreaLightSource \"diffuse\" \"string filename\" \"" + file + "\"\n");
+  };
+  const Scene screen = lamp("t.tga");
+  const Material& m = screen.materials.at(screen.triangles[0].material);
+  ASSERT_NE(m.emissionTexture, kNone);
+  EXPECT_EQ(screen.expressions.at(m.emissionTexture).wrapU, Wrap::Clamp);
+  const Scene gone = lamp("gone.png");
+  EXPECT_TRUE(isBlack(gone.materials.at(gone.triangles[0].material).emission));
+  EXPECT_EQ(countContaining(gone.warnings, "does not shine"), 1u) << joined(gone.warnings);
+}
+
 TEST_F(PbrtMaterials, AlphaCutsAway) {
   const std::string texture =
       "Texture \"a\" \"float\" \"imagemap\" \"string filename\" \"t.tga\"\n"
@@ -190,6 +218,7 @@ TEST_F(PbrtMaterials, AlphaCutsAway) {
   const Scene s = loadWorld(texture);
   const Material& m = s.materials.at(s.triangles[0].material);
   ASSERT_NE(m.opacityMap, kNone);
+  EXPECT_NEAR(m.opacityCutoff, 0.7354f, 1e-4f);  // the code of 0.5, as pbrt decodes alpha, too
   EXPECT_GT(s.textures.at(m.opacityMap).lookupAlpha(0.25f, 0.5f), 0.9f);
   EXPECT_LT(s.textures.at(m.opacityMap).lookupAlpha(0.75f, 0.5f), 0.1f);
   EXPECT_EQ(s.maskedBegin, 0u);

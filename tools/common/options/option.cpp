@@ -25,20 +25,12 @@ std::string spelled(const Value& value) {
   return std::to_string(std::get<uint64_t>(value));
 }
 
-bool met(const Condition& need, const Values& values) {
-  for (const auto& [name, value] : values.list()) {
-    if (name == need.option)
-      return need.values.empty() || holds(choicesIn(need.values), spelled(value));
-  }
-  return false;
-}
-
 // The first condition of each alternative that does not hold; empty if one alternative holds.
 std::vector<Condition> unmet(const Needs& needs, const Values& values) {
   std::vector<Condition> missing;
   for (const AllOf& all : needs.alternatives()) {
     const auto first = std::ranges::find_if_not(all.conditions(),
-                                                [&](const Condition& c) { return met(c, values); });
+                                                [&](const Condition& c) { return values.meet(c); });
     if (first == all.conditions().end()) return {};
     missing.push_back(*first);
   }
@@ -134,6 +126,11 @@ bool excludes(const Needs& needs, std::string_view option, std::string_view valu
 }
 
 }  // namespace
+
+bool Values::meet(const Condition& condition) const {
+  const Value* value = find(condition.option);
+  return value && (condition.values.empty() || holds(choicesIn(condition.values), spelled(*value)));
+}
 
 std::string needText(const Needs& needs) {
   std::string text;

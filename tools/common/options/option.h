@@ -14,6 +14,8 @@
 #include <variant>
 #include <vector>
 
+#include "tools/common/options/option_text.h"
+
 namespace bnvpl {
 
 // Another option has one of `values` ("local|even"); it is given, where `values` is empty.
@@ -143,6 +145,18 @@ constexpr OptionOf<T> letterFor(std::string_view letter, OptionOf<T> option) {
   option.letter = letter;
   return option;
 }
+// Conditions. Values that the option does not offer do not compile.
+template <typename T>
+constexpr Condition isGiven(const OptionOf<T>& option) {
+  return {option.name};
+}
+template <typename T>
+consteval Condition valueIs(const OptionOf<T>& option, std::string_view values) {
+  for (const std::string_view value : choicesIn(values))
+    if (option.kind == Option::Kind::Choice && !holds(choicesIn(option.choices), value))
+      throw "a value that the option does not offer";
+  return {option.name, values};
+}
 template <typename T>
 constexpr OptionOf<T> neededBy(const Needs& needs, OptionOf<T> option) {
   option.needs = needs;
@@ -211,6 +225,9 @@ class Values {
   void set(const OptionOf<T>& option, T value) {
     set(option.key(), std::move(value));
   }
+
+  // False also where the option has no value.
+  bool meet(const Condition& condition) const;
 
   // For code that takes options as data, such as conditions and records. Null without a value.
   const Value* find(std::string_view name) const;

@@ -15,20 +15,6 @@ std::string_view headingOf(Topic topic) {
   return kHeadings[static_cast<size_t>(topic)];
 }
 
-std::vector<std::string_view> choicesIn(std::string_view names) {
-  std::vector<std::string_view> out;
-  for (size_t begin = 0; !names.empty() && begin <= names.size();) {
-    const size_t end = std::min(names.find('|', begin), names.size());
-    out.push_back(names.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  return out;
-}
-
-bool holds(const std::vector<std::string_view>& names, std::string_view name) {
-  return std::ranges::find(names, name) != names.end();
-}
-
 std::string orList(const std::vector<std::string_view>& names) {
   std::string text;
   for (size_t i = 0; i < names.size(); ++i) {

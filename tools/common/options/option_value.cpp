@@ -48,7 +48,7 @@ double realOf(const Option& o, const std::string& text) {
   const std::errc error = readReal(text, value);
   if (error == std::errc::result_out_of_range) refuseRange(o, text);
   if (error != std::errc{}) refuseKind(o, text, "number");
-  return value;
+  return value + 0.0;  // -0 is 0
 }
 
 // "3k" -> 3000.

@@ -5,8 +5,8 @@
 #include "formats/output_target.h"
 #include "formats/shard/checkpoint.h"
 #include "tools/common/options/help.h"
-#include "tools/common/run/clock.h"
-#include "tools/common/stage/processor_id.h"
+#include "tools/common/process/clock.h"
+#include "tools/common/run/processor_id.h"
 
 namespace bnvpl {
 namespace {

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "core/work_controls.h"
-#include "tools/common/run/interrupt.h"
+#include "tools/common/process/interrupt.h"
 #include "tools/common/run/run_tool.h"
 
 namespace bnvpl {

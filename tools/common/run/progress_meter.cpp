@@ -9,7 +9,7 @@
 
 #include "tools/common/files/json_text.h"
 #include "tools/common/files/standard_streams.h"
-#include "tools/common/run/clock.h"
+#include "tools/common/process/clock.h"
 #include "tools/common/run/run_tool.h"
 
 namespace bnvpl {

@@ -20,12 +20,12 @@
 #include "tools/common/files/standard_streams.h"
 #include "tools/common/options/cli_errors.h"
 #include "tools/common/options/help.h"
-#include "tools/common/run/clock.h"
-#include "tools/common/run/exit_codes.h"
-#include "tools/common/run/interrupt.h"
-#include "tools/common/run/pin_functions.h"
+#include "tools/common/process/clock.h"
+#include "tools/common/process/exit_codes.h"
+#include "tools/common/process/interrupt.h"
+#include "tools/common/process/pin_functions.h"
+#include "tools/common/run/build_id.h"
 #include "tools/common/run/result_warning.h"
-#include "tools/common/stage/build_id.h"
 
 namespace bnvpl {
 

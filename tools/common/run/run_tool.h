@@ -10,8 +10,8 @@
 #include "core/processor.h"
 #include "formats/atomic_file.h"
 #include "tools/common/options/cli_option.h"
+#include "tools/common/options/stage_cli.h"
 #include "tools/common/run/progress_meter.h"
-#include "tools/common/stage/stage_cli.h"
 
 namespace bnvpl {
 
@@ -36,8 +36,7 @@ CLI::Option* addFile(CLI::App& cli, const std::string& name, std::vector<fs::pat
                      const std::string& help);
 
 // Adds --threads, --quiet, --strict, --no-clobber, --progress, --stats, --version and the forms of
-// --help. addDepfileOption() is for tools that read more
-// files than the command line names.
+// --help. addDepfileOption() is for tools that read more files than the command line names.
 void addToolOptions(CLI::App& cli, ToolOptions& options);
 void addDepfileOption(CLI::App& cli, ToolOptions& options);
 // Adds --processor, for tools that compute.

@@ -7,7 +7,7 @@
 #include "tools/common/files/escape_text.h"
 #include "tools/common/files/shell_text.h"
 #include "tools/common/options/help.h"
-#include "tools/common/stage/processor_id.h"
+#include "tools/common/run/processor_id.h"
 
 namespace bnvpl {
 namespace {

@@ -25,19 +25,31 @@ std::string textOf(const ShardInfo& info) {
                    {"of", info.of}});
 }
 
+namespace {
+
+ShardInfo infoOf(const Json& json) {
+  return {
+      {fieldOf<Json>(json, "run"), fieldOf<Given>(json, "given"), fieldOf<Json>(json, "sources"),
+       fieldOf<std::string>(json, "command"), fieldOf<std::string>(json, "history")},
+      fieldOf<std::string>(json, "processor"),
+      fieldOf<ShardParts>(json, "parts"),
+      fieldOf<uint64_t>(json, "of")};
+}
+
+}  // namespace
+
 ShardInfo parseShardInfo(const fs::path& file, const std::string& text) {
   // The object is checked as the only one of an array: isProvenance() tests depth and UTF-8.
   const std::string list = "[" + text + "]";
   const Json all = isProvenance(list) ? parseJson(list) : Json::array();
   if (all.size() != 1)
     throw InputError(file, "is damaged (what it says of itself); delete it and make it again");
-  const Json& json = all.front();
-  ShardInfo info{
-      {fieldOf<Json>(json, "run"), fieldOf<Given>(json, "given"), fieldOf<Json>(json, "sources"),
-       fieldOf<std::string>(json, "command"), fieldOf<std::string>(json, "history")},
-      fieldOf<std::string>(json, "processor"),
-      fieldOf<ShardParts>(json, "parts"),
-      fieldOf<uint64_t>(json, "of")};
+  ShardInfo info;
+  try {
+    info = infoOf(all.front());
+  } catch (const InputError& e) {
+    throw InputError(file, e.what());
+  }
   const bool history = info.run.history.empty() || isProvenance(info.run.history);
   if (!history || info.parts.empty() || info.of < 1 || info.of > kMaxShards)
     throw InputError(file, "is damaged (its parts or history); delete it and make it again");

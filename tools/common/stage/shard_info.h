@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/errors.h"
-#include "tools/common/stage/stage_cli.h"
+#include "tools/common/options/stage_cli.h"
 
 namespace bnvpl {
 

@@ -1,7 +1,7 @@
 #include "tools/common/stage/stage_run.h"
 
 #include "tools/common/files/depfile.h"
-#include "tools/common/run/exit_codes.h"
+#include "tools/common/process/exit_codes.h"
 #include "tools/common/run/progress_meter.h"
 
 namespace bnvpl {

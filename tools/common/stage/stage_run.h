@@ -15,9 +15,9 @@
 #include <vector>
 
 #include "core/progress.h"
-#include "tools/common/files/run_files.h"
 #include "tools/common/run/checkpoint.h"
 #include "tools/common/stage/cost.h"
+#include "tools/common/stage/run_files.h"
 #include "tools/common/stage/scene_options.h"
 #include "tools/common/stage/shard.h"
 

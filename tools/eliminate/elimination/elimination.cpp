@@ -27,9 +27,10 @@ constexpr auto kOptions = joined(kRadiusOptions, optionTable(kAlphaOption, kWeig
 constexpr double kLimitBeta = 0.65, kLimitGamma = 1.5;
 
 PairWeight pairWeightRule(size_t candidates, double count, const Values& options) {
-  const std::string& limiting = options[kWeightLimitingOption];
-  const bool limited = limiting == "on" || (limiting == "auto" && options[kAreaOption] > 0.0 &&
-                                            options[kDensityOption] == "uniform");
+  const bool limited =
+      options.meet(valueIs(kWeightLimitingOption, "on")) ||
+      (options.meet(valueIs(kWeightLimitingOption, "auto")) && options[kAreaOption] > 0.0 &&
+       options.meet(valueIs(kDensityOption, "uniform")));
   const double kept = count / static_cast<double>(candidates);
   const double limit = limited ? (1.0 - std::pow(kept, kLimitGamma)) * kLimitBeta : 0.0;
   return {options.real32(kAlphaOption), static_cast<float>(limit)};
@@ -43,9 +44,10 @@ struct Sorted {
 };
 
 // All pairs nearer than two radii compete, so the work grows as candidates^2 / kept. Where this
-// exceeds kMaxWork and there are more than kMaxPerVpl candidates per VPL, a first step keeps
-// kStepFactor per VPL, with the radii for that number (theory.md, "Cost"). kStepFactor makes the
-// work of both steps least at some 40 candidates per VPL.
+// exceeds kMaxWork and there are more than kMaxPerVpl candidates per VPL, earlier
+// steps keep kStepFactor times as many as those that follow them, with the radii for that number,
+// until the work fits (theory.md, "Cost"). kStepFactor makes the work of two steps least at some 40
+// candidates per VPL.
 constexpr double kMaxPerVpl = 24, kStepFactor = 10, kMaxWork = 0x1p18;
 
 // Number of candidates that each step keeps. The last step keeps `count`.

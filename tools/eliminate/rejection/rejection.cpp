@@ -42,8 +42,8 @@ std::vector<SurfacePoint> cameraPoints(const EliminateInputs& in, uint64_t key, 
     Rng rng(key, i);
     const Vec3 lens = sampleLens(scene.camera, [&] { return rng.nextPoint(); });
     const Ray ray = cameraRay(scene.camera, scene.film, film.x, film.y, lens);
-    const SpecularPath path =
-        followSpecularPath(*in.accel, *in.lights, ray.origin, ray.direction, Arrival{}, rng);
+    const SpecularPath path = followSpecularPath(*in.accel, *in.lights, ray.origin, ray.direction,
+                                                 Arrival{}, rng, {.wanted = false});
     if (path.rough) points.push_back(path.hit);
     if (in.progress) in.progress(1);
   }
@@ -53,19 +53,27 @@ std::vector<SurfacePoint> cameraPoints(const EliminateInputs& in, uint64_t key, 
   return points;
 }
 
-// Contribution of light i of `vpls` to all points together, summed over the channels.
+// Contribution of light i of `vpls` to the points together, summed over the channels.
 double contribution(const VplLights& vpls, size_t i, const Accelerator& accel,
-                    const std::vector<SurfacePoint>& points) {
+                    std::span<const Bsdf> points) {
   double sum = 0.0;
-  for (const SurfacePoint& p : points) {
+  for (const Bsdf& bsdf : points) {
+    const SurfacePoint& p = bsdf.point();
     VplTransfer c;
-    const Bsdf bsdf(accel.scene(), p);
     if (!unoccludedTransfer(vpls, i, bsdf, c)) continue;
     if (accel.occluded(accel.offsetOrigin(p.position, p.ng), vpls.position[i])) continue;
     const Vec3 light = c.transfer * vpls.intensity[i];
     sum += double{light.x} + double{light.y} + double{light.z};
   }
   return sum;
+}
+
+// Borrows the points.
+std::vector<Bsdf> bsdfsOf(const Scene& scene, std::span<const SurfacePoint> points) {
+  std::vector<Bsdf> bsdfs;
+  bsdfs.reserve(points.size());
+  for (const SurfacePoint& p : points) bsdfs.emplace_back(scene, p);
+  return bsdfs;
 }
 
 // Probabilities p_i = min(Phi_i / Phi_v + epsilon, 1), where the average Phi_v makes the expected
@@ -80,11 +88,12 @@ std::vector<double> probabilities(const std::vector<double>& contributions, doub
   };
   double low = 0.0, high = 0.0;
   for (const double b : contributions) high += b;
-  if (expected(high) > count) {
+  if (epsilon * static_cast<double>(contributions.size()) >= count) {
     throw InputError(
         "the minimum probabilities of all VPLs add up to more than -n; lower --min-probability or "
         "keep more");
   }
+  while (expected(high) > count) high *= 2.0;
   for (int step = 0; step < 200; ++step) {
     const double middle = 0.5 * (low + high);
     (expected(middle) > count ? low : high) = middle;
@@ -101,14 +110,22 @@ EliminateResult run(const EliminateInputs& in, const Values& options) {
     throw InputError(
         "--method rejection takes VPLs of vpl-place --method light; these are of "
         "vpl-estimate");
-  const uint64_t key = streamKey(options[kSeedOption], RandomStream::Eliminate) + 1;
-  const std::vector<SurfacePoint> points = cameraPoints(in, key, options[kCameraPointsOption]);
+  const uint64_t key = streamKey(options[kSeedOption], RandomStream::Eliminate);
+  const std::vector<SurfacePoint> points =
+      cameraPoints(in, streamKey(options[kSeedOption], RandomStream::CameraPoints),
+                   options[kCameraPointsOption]);
   const VplLights vpls = makeVplLights(all, *in.accel, options.real32(kClampOption));
   std::vector<double> contributions(all.size(), 0.0);
-  parallelFor(vpls.size(), 16, [&](size_t k) {
-    contributions[vpls.row[k]] = contribution(vpls, k, *in.accel, points);
-    if (in.progress) in.progress(1);
-  });
+  constexpr size_t kPointsAtOnce = 4096;  // so many BSDFs have some megabytes
+  for (size_t begin = 0; begin < points.size(); begin += kPointsAtOnce) {
+    const size_t end = std::min(points.size(), begin + kPointsAtOnce);
+    const std::vector<Bsdf> bsdfs =
+        bsdfsOf(in.accel->scene(), std::span(points).subspan(begin, end - begin));
+    parallelFor(vpls.size(), 16, [&](size_t k) {
+      contributions[vpls.row[k]] += contribution(vpls, k, *in.accel, bsdfs);
+      if (in.progress && end == points.size()) in.progress(1);
+    });
+  }
   if (std::ranges::all_of(contributions, [](double b) { return b == 0.0; })) {
     throw InputError(in.accel->scene().name(),
                      "no VPL sends any light to what the camera sees; place more with vpl-place");

@@ -55,7 +55,7 @@ TEST(Rejection, ThatKeepsNoneIsRefused) {
   int refused = 0;
   for (int seed = 1; seed <= 12; ++seed) {
     try {
-      const Given one{{"count", "2"}, {"min-probability", "1e-6"}, {"seed", std::to_string(seed)}};
+      const Given one{{"count", "1"}, {"min-probability", "1e-6"}, {"seed", std::to_string(seed)}};
       EXPECT_GT(cornell().keep(one).size(), 0u);
     } catch (const InputError& e) {
       EXPECT_STREQ(e.what(), "--method rejection kept no VPL; raise -n, or change --seed");
@@ -63,6 +63,22 @@ TEST(Rejection, ThatKeepsNoneIsRefused) {
     }
   }
   EXPECT_GT(refused, 0);
+}
+
+// The share of all of the view's light is then more than one VPL.
+TEST(Rejection, TakesOne) {
+  size_t kept = 0;
+  for (int seed = 1; seed <= 8; ++seed) {
+    try {
+      kept +=
+          cornell()
+              .keep({{"count", "1"}, {"min-probability", "1e-6"}, {"seed", std::to_string(seed)}})
+              .size();
+    } catch (const InputError& e) {
+      EXPECT_STREQ(e.what(), "--method rejection kept no VPL; raise -n, or change --seed");
+    }
+  }
+  EXPECT_GT(kept, 0u);
 }
 
 // A VPL without contribution to the view is kept with probability 1/100 and 100 times its flux.

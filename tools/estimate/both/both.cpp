@@ -37,8 +37,7 @@ constexpr uint64_t kMinPoints = 2, kMaxPoints = 32;
 constexpr double kMaxPilotShare = 0.25;
 // Less indirect light than this share of the light in view is treated as this share.
 constexpr double kMinIndirectShare = 0.05;
-// Limits of a cost trial (--estimate): photons and paths of the pilots, VPLs of the split, and
-// points per VPL after it.
+// Limits of a cost trial: photons and paths of pilots, VPLs of the split, points per VPL after it.
 constexpr uint64_t kTrialPhotons = 1 << 18, kTrialVpls = 8192;
 constexpr double kTrialPaths = 1 << 18, kTrialPoints = 8.0;
 constexpr uint64_t kMinUnits = 256;
@@ -51,8 +50,8 @@ struct PhotonWork {
   PhotonDeposits deposits;
   PhotonSums sums;
 
-  PhotonWork(const EstimateInputs& in, const Values& options, uint64_t count)
-      : perLight(in.lights, count), deposits(in, options.real32(kRadiusOption), perLight.total()) {}
+  PhotonWork(const EstimateInputs& in, const Coverage& coverage, float radius, uint64_t count)
+      : perLight(in.lights, count), deposits(in, coverage, radius, perLight.total()) {}
 
   double mean3(const std::array<int64_t, 3>& v) const {
     const FixedPoint& f = deposits.fixed();
@@ -66,12 +65,13 @@ class Estimator {
       : in_(in),
         options_(options),
         phases_(in.controls),
+        coverage_(coverageOf(in.vpls, in.accel, options.real32(kRadiusOption))),
         emission_{EmissionGuide(in.lights)},
         work_(options[kTotalWorkOption]) {}
 
   EstimateResult run() {
     in_.lights.requirePower();
-    emission_ = learnPhotonEmission(in_, options_, maxBounces(), work_);
+    emission_ = learnPhotonEmission(in_, coverage_, options_, maxBounces(), work_);
     const Split split = in_.controls.trial    ? splitOfTrial()
                         : in_.controls.source ? takeSplit(*in_.controls.source, in_.vpls.size())
                                               : pilot();
@@ -119,7 +119,7 @@ class Estimator {
 
   PhotonWork trace(size_t phase, RandomStream stream, uint64_t count,
                    std::span<const float> misRatios = {}, double trialScale = 1.0) {
-    PhotonWork work(in_, options_, count);
+    PhotonWork work(in_, coverage_, options_.real32(kRadiusOption), count);
     work.deposits.setMisRatios(misRatios);
     const PhotonRun run{streamKey(options_[kSeedOption], stream),
                         emitPointsOf(phase),
@@ -144,10 +144,12 @@ class Estimator {
   PathResult tracePaths(size_t phase, RandomStream stream, std::span<const uint64_t> points,
                         std::span<const float> misRatios, uint64_t equivalent,
                         double trialScale = 1.0) {
-    if (!spatialLights_) spatialLights_ = makeSpatialLightSampler(in_, options_[kSeedOption]);
-    const VplPaths vplPaths(in_, {streamKey(options_[kSeedOption], stream), options_[kPathsOption],
-                                  maxBounces(), options_.real32(kRadiusOption), emitPointsOf(phase),
-                                  spatialLights_.get(), misRatios, &emission_.guide});
+    if (!spatialLights_ && std::ranges::count(points, 0u) < std::ssize(points))
+      spatialLights_ = makeSpatialLightSampler(in_, options_[kSeedOption]);
+    const VplPaths vplPaths(
+        in_, coverage_,
+        {streamKey(options_[kSeedOption], stream), options_[kPathsOption], maxBounces(),
+         emitPointsOf(phase), spatialLights_.get(), misRatios, &emission_.guide});
     return phases_.run(
         phase, trialScale,
         [&](const WorkControls& controls) {
@@ -201,9 +203,10 @@ class Estimator {
     pilots.photonCost =
         static_cast<double>(photons.sums.rays + photons.sums.guardRays) / pilots.photons;
     for (const VplSum& s : photons.sums.vpl) {
-      pilots.byPhotons.push_back({photons.mean3(s.flux) - photons.mean3(s.onlyPhotons),
-                                  photons.deposits.variance(s),
-                                  photons.deposits.varianceByPower(s)});
+      const double only = photons.mean3(s.onlyPhotons), all = photons.mean3(s.flux);
+      const double onlyVariance = photons.deposits.onlyVariance(s);
+      pilots.byPhotons.push_back({all - only, photons.deposits.variance(s) - onlyVariance,
+                                  photons.deposits.varianceByPower(s), only, onlyVariance});
     }
   }
 
@@ -236,7 +239,8 @@ class Estimator {
     const double whole = pilots.photonCost * static_cast<double>(work_);
     const double guess = static_cast<double>(in_.vpls.size()) * kGuessedRays *
                          static_cast<double>(options_[kPathsOption]);
-    if (guess * kMinPoints > kMaxPilotShare * whole) return photonsAlone(work_ - reported_);
+    if (guess * kMinPoints > kMaxPilotShare * whole)
+      return photonsAlone(work_ - reported_, in_.vpls.size());
     const uint64_t points =
         std::clamp<uint64_t>(static_cast<uint64_t>(kPilot * whole / guess), kMinPoints, kMaxPoints);
     const bool trial = in_.controls.trial != nullptr;
@@ -246,7 +250,7 @@ class Estimator {
     // Nothing tells how to divide the work, as where only photons find the light.
     if (!trial && std::ranges::all_of(pilots.byPhotons, dark) &&
         std::ranges::all_of(pilots.byPaths, dark))
-      return photonsAlone(work_ - reported_);
+      return photonsAlone(work_ - reported_, in_.vpls.size());
     const WorkBudget budget{std::max(whole - spent, 0.5 * whole), irradianceError()};
     const Split split =
         trial ? splitOfSubset(pilots, budget) : splitWork(in_.vpls, in_.accel, pilots, budget);
@@ -284,11 +288,6 @@ class Estimator {
     return split;
   }
 
-  Split photonsAlone(uint64_t photons) const {
-    return {std::max<uint64_t>(1, photons), std::vector<uint64_t>(in_.vpls.size(), 0),
-            std::vector<float>(in_.vpls.size(), 0.0f)};
-  }
-
   // Flux of each VPL: the sum of the contributions of photons and paths, which have MIS weights.
   EstimateResult combine(const Split& split, const PhotonWork& photons,
                          const PathResult& paths) const {
@@ -315,7 +314,7 @@ class Estimator {
       result.energy.nonFinite += r.nonFinite;
     }
     result.workShare = split.costShare;
-    result.photonsAlone = split.photonsAlone();
+    result.photonsAlone = split.withoutPaths;
     result.useful = emission_.useful;
     VplGroups groups = photons.deposits.groupFlux(photons.sums);
     addGroupsTo(groups, paths);
@@ -329,6 +328,7 @@ class Estimator {
   const EstimateInputs& in_;
   const Values& options_;
   Phases<4, kPhotonPhase> phases_;
+  Coverage coverage_;
   LearnedEmission emission_;
   std::unique_ptr<const SpatialLightSampler> spatialLights_;
   uint64_t work_, reported_ = 0;  // in photons: all work, and that of the phases begun

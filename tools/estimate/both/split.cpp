@@ -61,9 +61,12 @@ double meanSample(const std::vector<PilotEstimate>& found) {
 }
 
 // Statistics of a VPL, pooled over those around it: the variance of a single photon and of a single
-// point, the flux, the cost of a point, and startDensity().
+// point, the flux, the cost of a point, and startDensity(); and flux and variance of a single
+// photon of the light that only photons find.
 struct VplStatistics {
   double photonVariance = 0.0, pointVariance = 0.0, flux = 0.0, pointCost = 0.0, startDensity = 1.0;
+  double onlyFlux = 0.0, onlyVariance = 0.0;
+  double allFlux() const { return flux + onlyFlux; }
 };
 
 // Sizes of typical samples of both pilots, and startDensity(), where nothing is known of a pool.
@@ -125,8 +128,12 @@ VplStatistics poolPilots(std::span<const uint32_t> wide, const Pilots& pilots,
   v.photonVariance = photons * flux * pilots.photons;
   v.pointVariance = points * flux * pilots.points;
   v.startDensity = startDensity(wide, pilots.byPhotons, anywhere.startDensity);
-  for (const uint32_t k : near)
-    v.pointCost += pilots.pointCost[k] / static_cast<double>(near.size());
+  const double each = 1.0 / static_cast<double>(near.size());
+  for (const uint32_t k : near) {
+    v.pointCost += pilots.pointCost[k] * each;
+    v.onlyFlux += pilots.byPhotons[k].onlyFlux * each;
+    v.onlyVariance += pilots.byPhotons[k].onlyVariance * each * pilots.photons;
+  }
   return v;
 }
 
@@ -162,9 +169,9 @@ class PointAllocation {
   explicit PointAllocation(std::vector<VplStatistics> statistics)
       : vpls_(std::move(statistics)), weight_(vpls_.size()) {
     double mean = 0.0;
-    for (const VplStatistics& v : vpls_) mean += v.flux / static_cast<double>(vpls_.size());
+    for (const VplStatistics& v : vpls_) mean += v.allFlux() / static_cast<double>(vpls_.size());
     for (size_t i = 0; i < weight_.size(); ++i)
-      weight_[i] = 1.0 / std::max(vpls_[i].flux + kMinFlux * mean, 1e-300);
+      weight_[i] = 1.0 / std::max(vpls_[i].allFlux() + kMinFlux * mean, 1e-300);
   }
 
   // Number n of points of VPL i that minimises
@@ -197,13 +204,13 @@ class PointAllocation {
   double relativeErrorAt(double photons, double lambda, const IrradianceProbes& probes) const {
     std::vector<double> flux, variances;
     for (size_t i = 0; i < vpls_.size(); ++i) {
-      flux.push_back(vpls_[i].flux);
+      flux.push_back(vpls_[i].allFlux());
       variances.push_back(variance(i, photons, lambda));
     }
     return probes.relativeError(flux, variances);
   }
   // Split::misRatio of VPL i. Photons that start with density g vary g times less than by
-  // power, so that their weight by inverse variance is g / (g + balance).
+  // power, so that their weight by inverse variance is g / (g + misRatio).
   double misRatio(size_t i, double photons, double points) const {
     const VplStatistics& v = vpls_[i];
     if (!(points > 0.0)) return 0.0;
@@ -214,7 +221,9 @@ class PointAllocation {
   double variance(size_t i, double photons, double lambda) const {
     const VplStatistics& v = vpls_[i];
     const double known = photons / v.photonVariance;
-    return 1.0 / (v.pointVariance > 0.0 ? known + at(i, photons, lambda) / v.pointVariance : known);
+    const double shared =
+        1.0 / (v.pointVariance > 0.0 ? known + at(i, photons, lambda) / v.pointVariance : known);
+    return shared + v.onlyVariance / photons;
   }
 
   std::vector<VplStatistics> vpls_;
@@ -256,6 +265,13 @@ Allocation smallestAllocation(const PointAllocation& points, const VplTable& vpl
 }
 
 }  // namespace
+
+Split photonsAlone(uint64_t photons, size_t vpls) {
+  Split split{std::max<uint64_t>(1, photons), std::vector<uint64_t>(vpls),
+              std::vector<float>(vpls)};
+  split.withoutPaths = true;
+  return split;
+}
 
 Split splitWork(const VplTable& vpls, const Accelerator& accel, const Pilots& pilots,
                 const WorkBudget& budget) {

@@ -2,19 +2,20 @@
 // whose fluxes are used for nothing else, so they add no bias.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <vector>
 
 #include "formats/vpl/vpl_table.h"
-#include "transport/accelerator.h"
+#include "transport/accelerator/accelerator.h"
 
 namespace bnvpl::methods::estimate::both {
 
-// Estimate of a VPL by a pilot: flux, averaged over the channels, in W, and its variance.
-// For photons, varianceByPower is what it would be if they started in proportion to power.
+// Estimate of a VPL by a pilot: flux, averaged over the channels, in W, and its variance. For
+// photons, varianceByPower is what it would be if they started in proportion to power. They also
+// have flux that paths cannot find, onlyFlux, which counts in none of the others.
 struct PilotEstimate {
   double flux = 0.0, variance = 0.0, varianceByPower = 0.0;
+  double onlyFlux = 0.0, onlyVariance = 0.0;
 };
 
 struct Pilots {
@@ -35,10 +36,11 @@ struct Split {
   double cost = 0.0;             // cost of photons and points, in rays
   double costShare = 1.0;        // cost over that of the budget
 
-  bool photonsAlone() const {
-    return costShare == 1.0 && std::ranges::count(points, 0u) == std::ssize(points);
-  }
+  bool withoutPaths = false;  // no pilot told how to divide, and photons do all the work
 };
+
+// All work for photons.
+Split photonsAlone(uint64_t photons, size_t vpls);
 
 struct WorkBudget {
   double cost = 0.0;   // maximal cost, in rays

@@ -24,10 +24,11 @@ EstimateResult run(const EstimateInputs& in, const Values& options) {
   CostTrial* const trial = in.controls.trial;
   const uint64_t each = options[kPointsOption], fewPoints = unitsToTry(trial, each, 8),
                  paths = options[kPathsOption], fewPaths = unitsToTry(trial, paths, 8);
-  const VplPaths vplPaths(
-      in, {streamKey(options[kSeedOption], RandomStream::VplPaths), fewPaths,
-           static_cast<unsigned>(options[kPathBouncesOption]), options.real32(kRadiusOption),
-           options[kEmitPointsOption], spatialLights.get()});
+  const Coverage coverage = coverageOf(in.vpls, in.accel, options.real32(kRadiusOption));
+  const VplPaths vplPaths(in, coverage,
+                          {streamKey(options[kSeedOption], RandomStream::VplPaths), fewPaths,
+                           static_cast<unsigned>(options[kPathBouncesOption]),
+                           options[kEmitPointsOption], spatialLights.get()});
   const std::vector<uint64_t> points(in.vpls.size(), fewPoints);
   WorkControls controls = in.controls;
   controls.trialScale = static_cast<double>(each) * static_cast<double>(paths) /

@@ -6,7 +6,7 @@
 #include <cstdio>
 
 #include "tools/common/files/escape_text.h"
-#include "tools/common/run/exit_codes.h"
+#include "tools/common/process/exit_codes.h"
 #include "tools/inspect/append_text.h"
 
 namespace bnvpl {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "images/comparison.h"
-#include "tools/common/run/exit_codes.h"
+#include "tools/common/process/exit_codes.h"
 #include "tools/common/run/run_tool.h"
 
 namespace bnvpl {

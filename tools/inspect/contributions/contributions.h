@@ -6,7 +6,7 @@
 
 #include "core/progress.h"
 #include "formats/vpl/vpl_table.h"
-#include "transport/accelerator.h"
+#include "transport/accelerator/accelerator.h"
 
 namespace bnvpl {
 

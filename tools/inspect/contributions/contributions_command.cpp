@@ -7,7 +7,7 @@
 #include "tools/common/files/depfile.h"
 #include "tools/common/options/film_size.h"
 #include "tools/common/options/help.h"
-#include "tools/common/run/exit_codes.h"
+#include "tools/common/process/exit_codes.h"
 #include "tools/inspect/command.h"
 #include "tools/inspect/contributions/contributions_json.h"
 #include "tools/inspect/rows_on_scene.h"

@@ -3,7 +3,7 @@
 
 #include "tools/common/files/json_text.h"
 #include "tools/inspect/contributions/contributions.h"
-#include "tools/inspect/plot/plot.h"
+#include "tools/inspect/rows_in_view.h"
 
 namespace bnvpl {
 

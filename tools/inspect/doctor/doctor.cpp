@@ -88,7 +88,7 @@ double describeLights(const Accelerator& accel, const LightSet& lights, Json& js
                "add a [[light]] or an emissive material, or give the scene file as a [[mesh]] of a "
                "scene.toml that has lights");
   findings.add(power > 0.0 && share < 0.001,
-               percent(share) + " of the light reaches what the camera sees, over all bounces",
+               percent(share) + " of the light reaches what the camera sees, over eight bounces",
                "look whether a wall shuts the lights off, or let them shine into the view; if it "
                "is meant so, keep --emission guided");
   return share;

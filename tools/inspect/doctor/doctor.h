@@ -4,16 +4,16 @@
 #include <string>
 
 #include "tools/common/files/json_text.h"
-#include "transport/accelerator.h"
-#include "transport/lights.h"
+#include "transport/accelerator/accelerator.h"
+#include "transport/lights/lights.h"
 
 namespace bnvpl {
 
 // Counts of the pipeline by default: pipelines/quality.mk.
 inline constexpr double kUsualVpls = 3000.0, kUsualPhotons = 10e6, kUsualSpp = 16.0;
 // Rates of pipelines/cost_model.json, CPU seconds on one core.
-inline constexpr double kSecondsPerPhoton = 9.662e-07, kSecondsPerSampleLog2Vpls = 9.094e-07,
-                        kSecondsPerSampleSqrtTriangles = 9.348e-09;
+inline constexpr double kSecondsPerPhoton = 1.389e-06, kSecondsPerSampleLog2Vpls = 1.389e-06,
+                        kSecondsPerSampleSqrtTriangles = 1.381e-08;
 
 // {"lights": [{"light", "power_W", "shines", "meets_at_once", "leaves", "reaches_view"}],
 //  "view": {"depth", "open", "behind", "inside"}, "vpls": {...}, "cost": {...},

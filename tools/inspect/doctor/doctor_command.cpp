@@ -1,10 +1,10 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "tools/common/files/run_files.h"
 #include "tools/common/files/standard_streams.h"
 #include "tools/common/options/help.h"
-#include "tools/common/run/exit_codes.h"
+#include "tools/common/process/exit_codes.h"
+#include "tools/common/stage/run_files.h"
 #include "tools/common/stage/scene_options.h"
 #include "tools/inspect/command.h"
 #include "tools/inspect/doctor/doctor.h"

@@ -7,7 +7,7 @@
 #include "core/random.h"
 #include "core/sampling.h"
 #include "transport/camera.h"
-#include "transport/photon_walk.h"
+#include "transport/photons/photon_walk.h"
 
 namespace bnvpl {
 namespace {

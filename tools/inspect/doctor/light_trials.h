@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <string>
 
-#include "transport/accelerator.h"
-#include "transport/lights.h"
+#include "transport/accelerator/accelerator.h"
+#include "transport/lights/lights.h"
 
 namespace bnvpl {
 

@@ -1,7 +1,7 @@
 // How much of a scene's surface matters to the view, for the doctor.
 #pragma once
 
-#include "transport/accelerator.h"
+#include "transport/accelerator/accelerator.h"
 
 namespace bnvpl {
 

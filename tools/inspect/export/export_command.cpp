@@ -2,9 +2,9 @@
 #include <memory>
 
 #include "formats/vpl/vpl_io.h"
-#include "tools/common/files/run_files.h"
 #include "tools/common/options/help.h"
-#include "tools/common/run/exit_codes.h"
+#include "tools/common/process/exit_codes.h"
+#include "tools/common/stage/run_files.h"
 #include "tools/inspect/command.h"
 #include "tools/inspect/export/export_table.h"
 

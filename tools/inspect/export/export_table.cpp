@@ -6,7 +6,7 @@
 #include "core/files.h"
 #include "formats/image/tonemap.h"
 #include "formats/vpl/vpl_io.h"
-#include "tools/common/files/output_kind.h"
+#include "tools/common/stage/output_kind.h"
 #include "tools/inspect/column_names.h"
 #include "tools/inspect/display_colour.h"
 #include "tools/inspect/facets.h"

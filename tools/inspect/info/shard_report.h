@@ -4,7 +4,7 @@
 #include <string>
 
 #include "core/errors.h"
-#include "tools/common/stage/stage_cli.h"
+#include "tools/common/options/stage_cli.h"
 
 namespace bnvpl {
 

@@ -4,7 +4,7 @@
 
 #include "formats/vpl/vpl_table.h"
 #include "tools/inspect/plot/plot_canvas.h"
-#include "transport/camera.h"
+#include "transport/accelerator/accelerator.h"
 
 namespace bnvpl {
 
@@ -18,15 +18,6 @@ struct PlotOptions {
   // Contribution of each row to the film, for DotColour::Contribution.
   std::vector<double> contributions = {};
 };
-
-// Where a row stands in the view.
-enum class RowSight : uint8_t { InSight, FacingAway, BackInSight, Occluded, Outside };
-struct RowInView {
-  RasterPoint film;
-  RowSight sight;
-  bool onFilm;  // whether it projects onto the film, hidden or not
-};
-std::vector<RowInView> rowsInView(const VplTable& table, const Accelerator& accel);
 
 // Numbers of rows by visibility; they add up to all rows.
 struct PlotCounts {

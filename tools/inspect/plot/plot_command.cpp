@@ -8,7 +8,7 @@
 #include "tools/common/options/choice.h"
 #include "tools/common/options/film_size.h"
 #include "tools/common/options/help.h"
-#include "tools/common/run/exit_codes.h"
+#include "tools/common/process/exit_codes.h"
 #include "tools/inspect/command.h"
 #include "tools/inspect/contributions/contributions.h"
 #include "tools/inspect/plot/plot.h"
@@ -40,8 +40,8 @@ CLI::App* addPlotOptions(CLI::App& cli, PlotRequest& c) {
   addReal(*sub, realOption("dot", "", 1, 100, "pixels", "diameter of a dot"), c.plot.dotPixels);
   addChoice(
       *sub, "--color", c.plot.colour, kDotColours,
-      "quantity that colours the dots, from violet (low) to yellow (high); contribution is what "
-      "a VPL brings to the view")
+      "quantity that colours the dots, from violet (low) to yellow (high); contribution is the "
+      "light of a VPL in the view")
       ->default_str("flux if lit, else plain");
   sub->add_flag("--show-back", c.plot.showBack,
                 "draw rings for visible rows whose lit side faces away");

@@ -14,7 +14,7 @@ namespace {
 constexpr const char* kSuffix = ".task.json";
 constexpr uintmax_t kMaxBytes = uintmax_t{1} << 24;
 constexpr size_t kLongestName = 200;
-constexpr double kLatestS = 1e11;  // the year 5138
+constexpr double kMaxTimeS = 1e11;  // the year 5138
 constexpr double kMaxS = 1e12, kMaxMiB = 1e12, kMaxAttempts = 1e6, kMaxExit = 255;
 
 // The fields of one record. Every error names the file.
@@ -87,8 +87,8 @@ TaskAttempt attemptOf(const Record& record) {
   a.job = record.optionalName("job");
   a.number = static_cast<unsigned>(record.number("attempt", kMaxAttempts));
   a.resumed = record.flag("resumed");
-  a.startS = record.number("start_s", kLatestS);
-  a.endS = record.optionalNumber("end_s", kLatestS);
+  a.startS = record.number("start_s", kMaxTimeS);
+  a.endS = record.optionalNumber("end_s", kMaxTimeS);
   a.cpuS = record.optionalNumber("cpu_s", kMaxS);
   a.peakMemoryMiB = record.optionalNumber("peak_memory_MiB", kMaxMiB);
   if (const auto code = record.optionalNumber("exit", kMaxExit)) a.exit = static_cast<int>(*code);

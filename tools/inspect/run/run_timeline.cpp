@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "tools/common/files/output_kind.h"
+#include "tools/common/stage/output_kind.h"
 #include "tools/inspect/append_text.h"
 #include "tools/inspect/run/run_report.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/material_inputs.h"
+#include "scene/visit_material.h"
 
 namespace bnvpl {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "scene/material_inputs.h"
+#include "scene/visit_material.h"
 #include "tools/inspect/scene/material_difference.h"
 
 namespace bnvpl {

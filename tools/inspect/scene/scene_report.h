@@ -2,7 +2,7 @@
 #pragma once
 
 #include "tools/common/run/run_tool.h"
-#include "transport/lights.h"
+#include "transport/lights/lights.h"
 
 namespace bnvpl {
 

@@ -59,7 +59,7 @@ std::string viewText(const Scene& scene, const Film& film, const Camera& c, cons
     text += "lens_radius = " + shortestText(c.lensRadius) +
             "\nfocus_distance = " + shortestText(c.focusDistance) + "\n";
   }
-  if (isMirrored(c) != guess.mirrored)
+  if (c.isMirrored() != guess.mirrored)
     text += std::string("mirrored = ") + (guess.mirrored ? "false\n" : "true\n");
   return text;
 }
@@ -244,7 +244,7 @@ void writeSceneToml(const Scene& scene, OutputFolder& folder) {
   for (const LightSpec& light : scene.lights) toml += lightText(scene, light);
   writeText(folder, "scene.toml", toml);
   for (size_t i = 0; scene.views.size() > 1 && i < scene.views.size(); ++i) {
-    const Guess guess{isMirrored(scene.camera), scene.film.filter};
+    const Guess guess{scene.camera.isMirrored(), scene.film.filter};
     writeText(folder, "view-" + std::to_string(i) + ".toml",
               viewText(scene, scene.views[i].film, scene.views[i].camera, guess));
   }

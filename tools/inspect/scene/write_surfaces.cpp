@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "core/number_text.h"
-#include "scene/material_inputs.h"
+#include "scene/visit_material.h"
 #include "tools/common/files/json_text.h"
 #include "tools/inspect/scene/write_scene.h"
 #include "transport/bsdf/model_report.h"

@@ -1,10 +1,10 @@
-// Instant radiosity (Keller 1997): a VPL at every diffuse hit of photons from the lights.
+// Instant radiosity (Keller 1997): a VPL at every rough hit of photons from the lights.
 #include <array>
 
 #include "core/random_streams.h"
 #include "spatial/represented_area.h"
 #include "tools/place/path_rows.h"
-#include "transport/photon_walk.h"
+#include "transport/photons/photon_walk.h"
 
 namespace bnvpl::methods::place::light {
 

@@ -12,8 +12,8 @@
 #include "spatial/reach_grid.h"
 #include "tools/common/stage/method.h"
 #include "tools/render/gather/gather.h"
-#include "transport/accelerator.h"
-#include "transport/spatial_light_sampler.h"
+#include "transport/accelerator/accelerator.h"
+#include "transport/direct_light/spatial_light_sampler.h"
 #include "transport/virtual_light/kinds.h"
 #include "transport/vpl_groups.h"
 
@@ -96,13 +96,14 @@ struct CompensateMethod {
   // two points depends on these alone.
   bool oneSize = false;
   bool countsContinued = false;  // the counter is that of the rays from later vertices
-  bool sharesPixels = false;  // neighbouring pixels share light, and so noise
+  bool correlatesPixels = false;  // neighbouring pixels share light, and so noise
+  double bytesPerVpl = 0.0;       // memory beside that of the integrator, as measured
 
   // Options that vpl-render refuses beside the method.
   std::vector<std::string_view> refuses() const {
     std::vector<std::string_view> refused;
     if (oneSize) refused.push_back("--light spherical");
-    if (sharesPixels) refused.push_back("--for-denoiser");
+    if (correlatesPixels) refused.push_back("--for-denoiser");
     return refused;
   }
 };

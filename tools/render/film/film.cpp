@@ -130,6 +130,26 @@ void showPhotons(const Film& size, const FilmState& film, const FilmOptions& opt
   preview.image(imageOf(radiance, size));
 }
 
+// Adds the light of all photons of the image, one for each camera sample, to the film.
+void addPhotons(const Film& size, const Splatter& splat, const FilmOptions& options,
+                FilmState& film, const ProgressFn& progress, const WorkControls& controls,
+                const FilmPreview& preview) {
+  const uint64_t photons = uint64_t{options.spp} * film.pixels.size();
+  const auto phase = progress.beginPhase("photons", controls.shard.shareOf(photons));
+  if (progress) progress(film.at.splats.traced);
+  addSplats(
+      splat, photons, film.at.splats, [&](const Splat& s) { film.add(s); }, progress, controls,
+      [&] { return film.encode(); },
+      [&, pace = PreviewPace(nowS() + 1.0)]() mutable {
+        if (!preview.image || !pace.due()) return;
+        pace.show([&] {
+          const double done = double(film.at.splats.traced) / double(photons);
+          showPhotons(size, film, options, done, preview);
+        });
+      });
+  film.splats.addNonFinite(film.at.splats.nonFinite);
+}
+
 }  // namespace
 
 std::optional<PixelBox> sampledPixels(const Film& film, const FilmOptions& options) {
@@ -141,7 +161,7 @@ Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOpt
                  FilmStats& stats, const ProgressFn& progress, const WorkControls& controls,
                  const FilmPreview& preview) {
   const uint64_t key = streamKey(options.seed, RandomStream::PixelSamples);
-  FilmState film(scene.film, static_cast<bool>(integrator.tracePhotons), controls.shard,
+  FilmState film(scene.film, static_cast<bool>(integrator.splatPhotons), controls.shard,
                  sampledPixels(scene.film, options), options.groups.size());
   const Tiles& tiles = film.tiles;
   if (!controls.state.empty()) film.decode(controls.state);
@@ -181,22 +201,8 @@ Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOpt
         },
         state);
   }
-  if (integrator.tracePhotons) {
-    const uint64_t photons = uint64_t{options.spp} * film.pixels.size();
-    const auto phase = progress.beginPhase("photons", controls.shard.shareOf(photons));
-    if (progress) progress(film.at.splats.traced);
-    addSplats(
-        integrator.tracePhotons, photons, film.at.splats,
-        [&](const Splat& splat) { film.add(splat); }, progress, controls, state,
-        [&, pace = PreviewPace(nowS() + 1.0)]() mutable {
-          if (!preview.image || !pace.due()) return;
-          pace.show([&] {
-            const double done = double(film.at.splats.traced) / double(photons);
-            showPhotons(scene.film, film, options, done, preview);
-          });
-        });
-    film.splats.addNonFinite(film.at.splats.nonFinite);
-  }
+  if (integrator.splatPhotons)
+    addPhotons(scene.film, integrator.splatPhotons, options, film, progress, controls, preview);
   if (!controls.sink) return develop(scene.film, options, film, stats, options.firstHits);
   film.giveTo(*controls.sink);
   giveFirstHits(film, options.firstHits, *controls.sink);

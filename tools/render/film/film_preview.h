@@ -7,7 +7,7 @@
 
 #include "core/vec3.h"
 #include "formats/image/image.h"
-#include "tools/common/run/clock.h"
+#include "tools/common/process/clock.h"
 
 namespace bnvpl {
 

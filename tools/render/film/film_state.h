@@ -80,16 +80,14 @@ struct FilmState {
 
   void giveTo(const ShardSink& sink) {
     std::vector<TilePixel> record;
-    for (size_t t = 0; t < tiles.count(); ++t) {
-      if (!shard.has(t) || !tiles.meets(t, crop)) continue;
-      const Tile tile = tiles.at(t);
+    forOwnTiles([&](size_t t, const Tile& tile) {
       record.resize(tile.pixels());
       for (uint32_t p = 0; p < tile.pixels(); ++p) {
         const size_t i = tiles.pixelIndex(tile, p);
         record[p] = {pixels[i], counts[i]};
       }
       giveRecord(sink, kTileWork, t, record);
-    }
+    });
     if (splats.pixels() > 0) sink.sums(kPhotonWork, splats.integers());
     if (groupSplats.pixels() > 0) sink.sums(kGroupPhotonWork, groupSplats.integers());
     groups.forArrays([&](std::string_view work, auto& array, size_t perPixel) {

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "core/parallel.h"
-#include "tools/render/film/surface_filter.h"
+#include "tools/render/film/filter/surface_filter.h"
 
 namespace bnvpl {
 

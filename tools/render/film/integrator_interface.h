@@ -5,7 +5,7 @@
 
 #include "tools/render/sample.h"
 #include "tools/render/splat/splat.h"
-#include "transport/emission_guide.h"
+#include "transport/photons/emission_guide.h"
 
 namespace bnvpl {
 
@@ -21,7 +21,7 @@ struct Integrator {
   // Estimates the radiance of all samples of a tile.
   std::function<void(const TileSamples& tile)> renderTile;
   // Traces photons that add indirect light, one per sample of the film. May be empty.
-  Splatter tracePhotons = {};
+  Splatter splatPhotons = {};
   bool wholePixels = false;   // every call needs all samples of its pixels
   size_t vpls = 0;            // number of VPLs with flux
   size_t emissionPoints = 0;  // places from which these VPLs shine

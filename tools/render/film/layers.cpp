@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "core/errors.h"
-#include "tools/render/film/cryptomatte.h"
+#include "tools/render/film/features/cryptomatte.h"
 
 namespace bnvpl {
 

@@ -95,11 +95,12 @@ void addSplat(const Splat& splat, float share, std::span<PixelSums> pixels,
 CameraSample makeSample(const Scene& scene, const PixelFilter& filter, uint64_t key,
                         const SampleRange& range, uint32_t x, uint32_t y, uint32_t sample) {
   const uint64_t index = uint64_t{y} * scene.film.width + x;
-  const Point2 jitter = r2Sequence(sample, double{toUnitFloat(random64(key, index, 0))},
-                                   double{toUnitFloat(random64(key, index, 1))});
-  const auto [at, weight] = filter.sample(jitter, {sample, range.all, random64(key, index, 3)});
+  const Point2 jitter = r2Sequence(sample, double{toUnitFloat(random64(key, index, kDimJitterX))},
+                                   double{toUnitFloat(random64(key, index, kDimJitterY))});
+  const auto [at, weight] =
+      filter.sample(jitter, {sample, range.all, random64(key, index, kDimFilter)});
   const Vec3 lens =
-      sampleLens(scene.camera, [&] { return owenSobol(sample, random64(key, index, 2)); });
+      sampleLens(scene.camera, [&] { return owenSobol(sample, random64(key, index, kDimLens)); });
   const Ray ray = cameraRay(scene.camera, scene.film, (float(x) + at.x) / float(scene.film.width),
                             (float(y) + at.y) / float(scene.film.height), lens);
   CameraSample s;

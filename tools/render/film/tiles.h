@@ -77,6 +77,17 @@ bool addSample(const RadianceSample& sample, PixelSums& pixel, PixelCounts& coun
 void addSplat(const Splat& splat, float share, std::span<PixelSums> pixels,
               std::span<PixelCounts> counts);
 
+// Dimensions of the random numbers of a film. Those of the pilot have a tile's index in the place
+// of a pixel's.
+enum FilmDimension : uint32_t {
+  kDimJitterX,
+  kDimJitterY,
+  kDimLens,
+  kDimFilter,
+  kDimPilotTile,
+  kDimPilotKey
+};
+
 // Camera ray of a sample: place on the film and point of the lens, stratified with those of the
 // pixel's other samples, `range.all` in number.
 CameraSample makeSample(const Scene& scene, const PixelFilter& filter, uint64_t key,

@@ -10,11 +10,12 @@
 #include "core/progress.h"
 #include "core/random.h"
 #include "tools/common/stage/method.h"
-#include "tools/render/film/gather_filter.h"
+#include "tools/render/film/filter/gather_filter.h"
 #include "tools/render/light_tree/light_tree.h"
 #include "tools/render/sample.h"
+#include "tools/render/tile_dimensions.h"
 #include "transport/bsdf.h"
-#include "transport/lights.h"
+#include "transport/lights/lights.h"
 #include "transport/virtual_light/virtual_light.h"
 
 namespace bnvpl {
@@ -64,11 +65,12 @@ struct Gather {
 };
 
 // The shading point of each pixel, row by row; its triangle is kNone where there is none.
-// `emission`: emission that the camera path hits before, mean of the channels, W/(m2 sr).
+// `direct`: direct light that the camera path collects before it, such as emission, mean of the
+// channels, W/(m2 sr).
 struct FilmPoints {
   uint32_t width = 0, height = 0;
   std::vector<SurfacePoint> points;
-  std::vector<float> emission;
+  std::vector<float> direct;
 };
 
 // Inputs of a method, borrowed until the image is done.
@@ -95,12 +97,12 @@ struct GatherMethod {
   bool pixelSum = false;    // treats all samples of a pixel as one, with their weights
   bool sharesDraws = false;  // pixels have the same random VPLs, and so the same noise
 
-  bool tiesPixels() const { return gatherFilter || sharesDraws; }
+  bool correlatesPixels() const { return gatherFilter || sharesDraws; }
   // Options that vpl-render refuses beside the method.
   std::vector<std::string_view> refuses() const {
     std::vector<std::string_view> refused;
     if (pixelSum) refused.push_back("--control vpls");
-    if (tiesPixels()) refused.push_back("--for-denoiser");
+    if (correlatesPixels()) refused.push_back("--for-denoiser");
     if (!lightGroups) refused.push_back("--layers light_groups");
     return refused;
   }
@@ -120,7 +122,7 @@ Gather gatherEach(Fn fn) {
         out[i] = fn(*tile.bsdf[i], tile.groupsOf(i));
       } else {
         const uint64_t sample = i + uint64_t{tile.firstSample} * tile.pixels;
-        out[i] = fn(*tile.bsdf[i], random64(tile.key, sample, 0), tile.groupsOf(i));
+        out[i] = fn(*tile.bsdf[i], random64(tile.key, sample, kDimReceiver), tile.groupsOf(i));
       }
     }
   }};

@@ -142,7 +142,7 @@ SlicePlan makeSlicePlan(const GatherInputs& in, const Values& options) {
   std::vector<SurfacePoint> film = in.filmPoints().points;
   std::erase_if(film, [](const SurfacePoint& p) { return p.triangle == kNone; });
   if (in.vpls.size() == 0) return plan;
-  const uint64_t key = streamKey(in.seed, RandomStream::LightTree) + 1;
+  const uint64_t key = streamKey(in.seed, RandomStream::MatrixSlices);
   Rng rng(key, 0);
   plan.nodes.resize(1);
   if (film.empty()) {

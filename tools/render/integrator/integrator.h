@@ -12,8 +12,8 @@
 #include "tools/render/film/integrator_interface.h"
 #include "tools/render/gather/gather.h"
 #include "tools/render/pixel_filter.h"
-#include "transport/accelerator.h"
-#include "transport/lights.h"
+#include "transport/accelerator/accelerator.h"
+#include "transport/lights/lights.h"
 #include "transport/vpl_groups.h"
 
 namespace bnvpl {
@@ -48,11 +48,9 @@ constexpr TextOption firefliesOption(std::string_view defaultText) {
       "redistributed over the surface around, or kept");
 }
 
-inline constexpr OptionKey<std::string> kFirefliesKey = firefliesOption({}).key();
-
 // Whether fireflies are redistributed; false for methods without the option.
 inline bool redistributesFireflies(const Values& options) {
-  return options.has(kFirefliesKey) && options[kFirefliesKey] == "redistribute";
+  return options.meet(valueIs(firefliesOption({}), "redistribute"));
 }
 
 // The gather of a run; null where nothing is gathered.
@@ -82,8 +80,8 @@ struct IntegratorMethod {
   std::span<const Option> options;
   Integrator (*make)(const IntegratorInputs&, const Values&);
   bool needsVpls = false;
-  // Sets Integrator::tracePhotons; photons traced by `make` do not count.
-  bool tracesPhotons = false;
+  // Sets Integrator::splatPhotons; photons traced by `make` do not count.
+  bool splatsPhotons = false;
   bool gathersVpls = false;  // --gather and --compensate apply
 };
 // Defined in the build folder by cmake/Methods.cmake, from the folders beside this file.

@@ -20,7 +20,6 @@ const Material* glassOf(const Scene& scene) {
 std::string lightMissedInGlass(const Scene& scene, const LightSet& lights,
                                std::string_view integrator) {
   const bool path = integrator == "path";
-  if (!path && integrator != "guided" && integrator != "light") return {};
   for (size_t i = 0; i < lights.size(); ++i) {
     if (lights.hittable(i) || !(mean(lights.power(i)) > 0.0f)) continue;
     const Material* glass = glassOf(scene);
@@ -29,8 +28,8 @@ std::string lightMissedInGlass(const Scene& scene, const LightSet& lights,
         " misses light of the " + lights.name(i) + " through material '" + glass->name + "'";
     return scene.name() + ": --integrator " + std::string(integrator) + missed +
            (path ? "; use --integrator vpl, guided or light, or give the light a size"
-                 : ", where the camera sees it over a mirror or through glass; use --integrator "
-                   "vpl, or give the light a size");
+                 : ", where the camera sees it over a mirror or through glass; give the light a "
+                   "size");
   }
   return {};
 }

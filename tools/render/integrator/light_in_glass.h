@@ -1,11 +1,12 @@
 // Point, spot and directional lights behind glass: shadow rays end at the glass, and no other ray
-// can hit such a light. Photons carry its light to surfaces that the camera sees directly.
+// can hit such a light. Photons carry its light to surfaces that the camera sees directly, and no
+// integrator finds it where the camera sees them over a mirror or through glass.
 #pragma once
 
 #include <string>
 #include <string_view>
 
-#include "transport/lights.h"
+#include "transport/lights/lights.h"
 
 namespace bnvpl {
 

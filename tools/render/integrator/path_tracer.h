@@ -1,12 +1,13 @@
 #pragma once
 
 #include "tools/render/integrator/integrator.h"
+#include "tools/render/stage_options.h"
 
 namespace bnvpl {
 
 // The option of every integrator that traces paths.
 inline constexpr WholeOption kMaxBouncesOption =
-    neededBy({Condition{"only", "all|indirect"}},
+    neededBy({kIndirectIsShown},
              wholeOption("max-bounces", "32", 0, 1000, "",
                          "bounces off rough surfaces after the first, as vpl-estimate's"));
 inline unsigned maxBouncesOf(const Values& options) {  // none counts for direct light

@@ -8,7 +8,8 @@ namespace bnvpl {
 void addDirectLight(const IntegratorInputs& in, const Values& options, const FilmRays& filmRays,
                     const FilmPoints& filmPoints, unsigned lightRays, TileParts& out) {
   if (in.only == Only::Indirect) return;
-  if (lightRays > 0 && in.lights.size() > 0) {  // VPLs may come from elsewhere, and light alone
+  if (lightRays > 0 &&
+      in.lights.size() > 0) {  // a scene without lights may be lit by VPLs of a file
     const uint64_t raysOfTile = uint64_t{kTileSide} * kTileSide * options[kSppOption] * lightRays;
     out.lightRays = lightRays;
     out.lights = std::make_unique<const TileLightSampler>(
@@ -51,7 +52,7 @@ SampleAllocation allocationOf(const IntegratorInputs& in, const Values& options,
                               const TileIntegrator& integrator) {
   if (!options.has(kAllocateKey) || !options[kAllocateKey]) return {};
   return findAllocation(
-      in.accel.scene(), in.filter, in.seed, options[kSppOption], in.progress,
+      in.accel.scene(), in.filter, in.seed, options[kSppOption], in.only, in.progress,
       [&](const TileSamples& tile) { return integrator.render(tile, SampleAllocation{}); });
 }
 

@@ -51,7 +51,7 @@ class DeviationModel {
         sinHalfAngle_(n.sinHalfAngle),
         normalSpread_(kNormalSpread * (1.0f - n.cosHalfAngle)) {}
 
-  // Without branches, so that the compiler can vectorise it over points.
+  // There are no branches, so that the compiler can vectorise it over points.
   ClusterDeviation at(Vec3 point, Vec3 normal, Vec3 reflected) const {
     const Vec3 d = middle_ - point;
     const float distance2 = larger(lengthSquared(d), closest2_);

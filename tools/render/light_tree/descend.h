@@ -8,16 +8,11 @@
 
 namespace bnvpl {
 
-struct Descent {
-  uint32_t vpl;
-  float probability;
-};
-
 // Draws a VPL of a node by one random number in [0, 1). `leftShare(left, right)` is the probability
 // of the left child, or empty if neither child may light the receiver; then nothing is drawn.
 template <typename LeftShare>
-std::optional<Descent> descend(const LightTree& tree, uint32_t node, double u,
-                               const LeftShare& leftShare) {
+std::optional<VplSample> descend(const LightTree& tree, uint32_t node, double u,
+                                 const LeftShare& leftShare) {
   float probability = 1.0f;
   while (!tree.nodes[node].leaf()) {
     const LightNode& n = tree.nodes[node];
@@ -30,7 +25,7 @@ std::optional<Descent> descend(const LightTree& tree, uint32_t node, double u,
     probability *= share;
     node = goLeft ? n.left : n.right;
   }
-  return Descent{tree.nodes[node].representative, probability};
+  return VplSample{tree.nodes[node].representative, probability};
 }
 
 }  // namespace bnvpl

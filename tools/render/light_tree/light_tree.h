@@ -10,6 +10,12 @@ namespace bnvpl {
 
 inline constexpr size_t kMaxStartCut = 32;
 
+// A VPL that was drawn with this probability, > 0.
+struct VplSample {
+  uint32_t vpl;
+  float probability;
+};
+
 // One VPL of a cluster, and the factor of its intensity with which it represents the cluster.
 struct VplDraw {
   uint32_t index;

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/vec3.h"
+#include "core/sampling.h"
 
 namespace bnvpl {
 
@@ -21,7 +21,7 @@ struct NormalCone {
 // Smallest cone that contains both cones, slightly wider despite rounding. The angle between the
 // axes comes from atan2, as acos tells equal axes apart where their cosine rounds to less than 1.
 inline NormalCone merged(const NormalCone& a, const NormalCone& b) {
-  constexpr float kStraight = 3.14159265f, kMargin = 1e-3f;
+  constexpr float kMargin = 1e-3f;
   constexpr float kAlike = 1e-6f;  // axes that differ by rounding
   const NormalCone &wide = a.cosHalfAngle <= b.cosHalfAngle ? a : b, &narrow = &wide == &a ? b : a;
   const float wideAngle = std::acos(wide.cosHalfAngle),
@@ -31,10 +31,10 @@ inline NormalCone merged(const NormalCone& a, const NormalCone& b) {
   const float between = std::atan2(length(sideways), cosine);
   if (between + narrowAngle <= wideAngle + kAlike) return wide;
   const float angle = 0.5f * (wideAngle + narrowAngle + between);
-  if (angle >= kStraight || between > kStraight - kAlike) return {wide.axis, -1.0f};
+  if (angle >= kPi || between > kPi - kAlike) return {wide.axis, -1.0f};
   const float turn = angle - wideAngle;
   return {normalize(wide.axis * std::cos(turn) + normalize(sideways) * std::sin(turn)),
-          std::cos(std::min(kStraight, angle + kMargin))};
+          std::cos(std::min(kPi, angle + kMargin))};
 }
 
 }  // namespace bnvpl

@@ -8,7 +8,7 @@ namespace {
 
 // Lower bound of the squared distance to a cluster, over its squared radius: most of a cluster
 // around the point is farther away than its centre (measured).
-constexpr float kClosest = 2.0f;
+constexpr float kMinDistance = 2.0f;
 // Least cosine with which spheres count, whose light may come from across a horizon.
 constexpr float kMinOfSphere = 0.1f;
 
@@ -22,7 +22,7 @@ std::array<float, 4> store(__m128 v) {
 
 }  // namespace
 
-// From a point to four spheres.
+// Directions from a point to four spheres.
 struct VplSampler::SphereDirections {
   __m128 x, y, z;               // unit, to the centres
   __m128 cosSphere, sinSphere;  // half of the angle that each subtends
@@ -141,11 +141,11 @@ VplSampler::Lanes VplSampler::Point::likelyOf(uint32_t node) const {
     }
     value = load(sums);
   }
-  const __m128 away2 = larger(d2, all(kClosest) * radius2);
+  const __m128 away2 = larger(d2, all(kMinDistance) * radius2);
   return store(value * cosine * emitter / Kind::boundedDistance2(away2, load(f.size2)));
 }
 
-std::optional<VplSampler::Draw> VplSampler::Point::draw(float u, Rng& rng) const {
+std::optional<VplSample> VplSampler::Point::draw(float u, Rng& rng) const {
   const auto begin = upTo_.begin(), end = begin + static_cast<std::ptrdiff_t>(starts_);
   const auto slot =
       std::min(starts_ - 1, static_cast<size_t>(std::upper_bound(begin, end, u * whole_) - begin));
@@ -163,7 +163,7 @@ std::optional<VplSampler::Draw> VplSampler::Point::draw(float u, Rng& rng) const
   }
   // Rounding may select the last slot or lane even if its probability is 0.
   if (!(probability > 0.0f)) return {};
-  return Draw{child & ~kLeaf, probability};
+  return VplSample{child & ~kLeaf, probability};
 }
 
 }  // namespace bnvpl

@@ -1,5 +1,5 @@
 // Samples single VPLs about in proportion to their contribution at a point, by descending a tree
-// whose nodes hold four clusters of the light tree side by side (after Estevez & Kulla 2018).
+// whose nodes hold four clusters of the light tree side by side (after Conty Estevez & Kulla 2018).
 #pragma once
 
 #include <array>
@@ -20,11 +20,6 @@ class VplSampler {
  public:
   explicit VplSampler(const LightTree& tree);
 
-  struct Draw {
-    uint32_t vpl;
-    float probability;  // > 0
-  };
-
   // Sampling distribution at one point. Borrows both arguments.
   class Point {
    public:
@@ -33,7 +28,7 @@ class VplSampler {
     // Draws a VPL. u in [0, 1) selects a cluster of the start cut and should be stratified over the
     // draws of a point. Returns nothing if the descent reaches clusters that cannot light the
     // point. Must not be called if dark().
-    std::optional<Draw> draw(float u, Rng& rng) const;
+    std::optional<VplSample> draw(float u, Rng& rng) const;
 
    private:
     // Estimated light of each of four clusters without visibility, W/(m2 sr); 0 only if no light

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "tools/common/run/clock.h"
+#include "tools/common/process/clock.h"
 #include "tools/render/preview/tev_packets.h"
 
 namespace bnvpl {

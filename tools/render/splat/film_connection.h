@@ -7,7 +7,7 @@
 
 #include "tools/render/pixel_filter.h"
 #include "tools/render/splat/splat.h"
-#include "transport/accelerator.h"
+#include "transport/accelerator/accelerator.h"
 
 namespace bnvpl {
 

@@ -19,9 +19,9 @@ class FilmRays {
         spatialLights_(spatialLights),
         key_(streamKey(seed, RandomStream::FilmPoints)) {}
 
-  // The shading point; its triangle is kNone if there is none. `emission` receives the emission on
-  // the camera path, mean of the channels.
-  SurfacePoint point(size_t pixel, float* emission = nullptr) const {
+  // The shading point; its triangle is kNone if there is none. `direct` receives the direct
+  // light that the camera path collects before it, mean of the channels.
+  SurfacePoint point(size_t pixel, float* direct = nullptr) const {
     const uint32_t width = accel_.scene().film.width;
     Rng rng(key_, pixel);
     const float x = rng.next(), y = rng.next();
@@ -30,7 +30,7 @@ class FilmRays {
         accel_, lights_, static_cast<uint32_t>(pixel % width), static_cast<uint32_t>(pixel / width),
         {filter_.sample({x, y}).at}, rng, sample, {nullptr, spatialLights_});
     if (!path.rough) path.hit.triangle = kNone;
-    if (emission) *emission = mean(sample.direct);
+    if (direct) *direct = mean(sample.direct);
     return path.hit;
   }
 
@@ -38,9 +38,9 @@ class FilmRays {
     const Film& size = accel_.scene().film;
     FilmPoints found{size.width, size.height, {}, {}};
     found.points.resize(size_t{found.width} * found.height);
-    found.emission.resize(found.points.size());
+    found.direct.resize(found.points.size());
     parallelFor(found.points.size(), 64,
-                [&](size_t i) { found.points[i] = point(i, &found.emission[i]); });
+                [&](size_t i) { found.points[i] = point(i, &found.direct[i]); });
     return found;
   }
 

@@ -9,7 +9,7 @@
 
 #include "tools/render/sample.h"
 #include "tools/render/tile/reuse/path_reuse.h"
-#include "transport/direct_light.h"
+#include "transport/direct_light/direct_light.h"
 #include "transport/walk.h"
 
 namespace bnvpl {

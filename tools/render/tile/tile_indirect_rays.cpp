@@ -38,7 +38,10 @@ void TileIndirectRays::send(unsigned rays) {
 
 void TileIndirectRays::sendAllocated(const SampleAllocation& allocation, Vec3 meanDirect) {
   const unsigned pilot = (parts_.raysEach + kPilotShare - 1) / kPilotShare;
-  send(pilot);
+  // The parities have sequences of their own: in one sequence, a point that found a bright source
+  // for one parity would leave none there for the other, whose number of rays grows by it.
+  for (size_t i = 0; i < found_.size(); ++i)
+    sendFrom(i, pilot, random64(tile_.key, i % tile_.pixels, kDimPilotRays0 + pattern_.parity(i)));
   reuse(kSamplesPerPilot);
   const std::array<unsigned, 2> all = allocate(pilot, allocation, meanDirect);
   for (size_t i = 0; i < found_.size(); ++i) {

@@ -14,18 +14,17 @@ double TileIntegrator::render(const TileSamples& tile, const SampleAllocation& a
   const bool directAlone = parts_.directSamples && only_ == Only::Direct;
   const ShadingPoints points = traceCameraPaths(tile, learned);
   DirectSamples::Pilot pilot;
-  if (parts_.directSamples) pilot = parts_.directSamples->pilot(tile, learned.strata);
+  if (parts_.directSamples) {
+    pilot = parts_.directSamples->pilot(tile, learned.strata);
+  } else if (only_ != Only::Indirect) {
+    pilot.light = addDirectLight(tile, points, learned);
+  }
   double cost = directAlone ? 0.0 : double(count) * cost::kCameraRay;
   if (parts_.gather && only_ != Only::Direct) gatherVpls(tile, points, allocation, pilot.light);
   if (parts_.compensateTile && only_ != Only::Direct) cost += compensateTile(tile, points);
   for (size_t i = 0; i < count; ++i) {
-    CameraSample& s = tile.samples[i];
-    cost += s.radiance.shadowRays + cost::kCluster * s.radiance.cut;
-    if (!points.bsdf[i] || only_ == Only::Indirect || parts_.directSamples) continue;
-    const uint64_t key = random64(tile.key, i % tile.pixels, kDimLight);
-    s.radiance.direct += points.paths[i].throughput *
-                         directAt(*points.bsdf[i], learned, sampleIndexOf(tile, i), key, s.rng,
-                                  s.groups.direct().times(points.paths[i].throughput));
+    const RadianceSample& radiance = tile.samples[i].radiance;
+    cost += radiance.shadowRays + cost::kCluster * radiance.cut;
   }
   if (parts_.rays) cost += addRays(tile, points, learned, allocation, pilot.light);
   if (parts_.control) parts_.control(tile, points.paths);
@@ -69,6 +68,23 @@ ShadingPoints TileIntegrator::traceCameraPaths(const TileSamples& tile,
   return out;
 }
 
+// Adds direct light by shadow rays from each shading point. Returns the mean of all direct light.
+Vec3 TileIntegrator::addDirectLight(const TileSamples& tile, const ShadingPoints& points,
+                                    const LearnedLight& learned) const {
+  Vec3 sum;
+  for (size_t i = 0; i < tile.samples.size(); ++i) {
+    CameraSample& s = tile.samples[i];
+    if (points.bsdf[i]) {
+      const uint64_t key = random64(tile.key, i % tile.pixels, kDimLight);
+      s.radiance.direct += points.paths[i].throughput *
+                           directAt(*points.bsdf[i], learned, sampleIndexOf(tile, i), key, s.rng,
+                                    s.groups.direct().times(points.paths[i].throughput));
+    }
+    sum += unweighted(s.radiance.direct, s.weight);
+  }
+  return sum * (1.0f / static_cast<float>(tile.samples.size()));
+}
+
 // Direct light at a shading point by shadow rays, with MIS weights against the rays for indirect
 // light.
 Vec3 TileIntegrator::directAt(const Bsdf& bsdf, const LearnedLight& learned, uint32_t sampleIndex,
@@ -100,9 +116,7 @@ void TileIntegrator::gatherVpls(const TileSamples& tile, const ShadingPoints& po
   if (allocation.marginalCost > 0.0) {
     // floorLight and medianLight are squares summed over the channels. For grey light of square q
     // the sum of the channels is sqrt(3 q).
-    // The mean may be negative where the pixel filter is, or no number where a sample is none.
-    const float direct = meanDirect.x + meanDirect.y + meanDirect.z;
-    receivers.otherLight = (std::isfinite(direct) ? std::max(0.0f, direct) : 0.0f) +
+    receivers.otherLight = meanDirect.x + meanDirect.y + meanDirect.z +
                            static_cast<float>(std::sqrt(3.0 * allocation.floorLight));
     receivers.medianTileLight = static_cast<float>(std::sqrt(3.0 * allocation.medianLight));
   }

@@ -19,6 +19,8 @@ class TileIntegrator {
 
  private:
   ShadingPoints traceCameraPaths(const TileSamples& tile, const LearnedLight& learned) const;
+  Vec3 addDirectLight(const TileSamples& tile, const ShadingPoints& points,
+                      const LearnedLight& learned) const;
   Vec3 directAt(const Bsdf& bsdf, const LearnedLight& learned, uint32_t sampleIndex, uint64_t key,
                 Rng& rng, const LightGroupSink& groups) const;
   void gatherVpls(const TileSamples& tile, const ShadingPoints& points,

@@ -12,7 +12,7 @@
 #include "tools/render/tile/direct/direct_samples.h"
 #include "tools/render/tile/direct/tile_light_sampler.h"
 #include "tools/render/tile/indirect_rays.h"
-#include "transport/spatial_light_sampler.h"
+#include "transport/direct_light/spatial_light_sampler.h"
 #include "transport/specular_path.h"
 
 namespace bnvpl {

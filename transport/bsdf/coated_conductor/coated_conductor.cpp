@@ -6,20 +6,12 @@
 
 namespace bnvpl {
 
-namespace {
-
-// Cosine inside the coat of a direction with the given cosine outside (Snell's law).
-float within(float cosine, float ior) {
-  return std::sqrt(std::max(0.0f, 1.0f - (1.0f - cosine * cosine) / (ior * ior)));
-}
-
-}  // namespace
-
 // Fresnel reflectance of the metal at the refracted angle, times the coat's transmittances at wo
-// and wi, summed over all reflections between coat and metal.
+// and wi, summed over all reflections between coat and metal. Each crosses the coat twice.
 Vec3 CoatedMetal::through(Vec3 wo, Vec3 wi, float cosFacet) const {
   const float o = coat(wo.z), i = coat(wi.z), back = std::min(o, i);
-  Vec3 f = metal.fresnel.at(within(std::min(1.0f, cosFacet), ior));
+  const float kept = absorption.across(wo.z) * absorption.across(wi.z);
+  Vec3 f = metal.fresnel.at(refractedCosine(std::min(1.0f, cosFacet), absorption.ior)) * kept;
   for (size_t c = 0; c < 3; ++c) {
     f[c] = back < 1.0f ? f[c] * (1.0f - o) * (1.0f - i) / (1.0f - f[c] * back) : 0.0f;
   }
@@ -52,7 +44,9 @@ void addLobes(const CoatedConductorModel& model, const MaterialInputs& inputs, V
   const GgxReflection metal{ggxOf(model.roughness, inputs),
                             metalFresnel(model.fresnel, ior, inputs)};
   out.add(weight, GgxReflection{coat, {FacetFresnel::Kind::Dielectric, Vec3(ior), {}}});
-  out.add(weight, CoatedMetal{metal, ior, coat.smooth() ? 0.0f : coat.meanAlpha()});
+  out.add(weight, CoatedMetal{metal,
+                              {inputs.thickness(model.coatThickness), ior},
+                              coat.smooth() ? 0.0f : coat.meanAlpha()});
 }
 
 ModelReport describe(const Scene&, const CoatedConductorModel& m) {
@@ -61,11 +55,12 @@ ModelReport describe(const Scene&, const CoatedConductorModel& m) {
   out.add("roughness", m.roughness);
   out.add("coat_ior", m.coatIor);
   out.add("coat_roughness", m.coatRoughness);
+  if (m.coatThickness.value > 0) out.add("coat_thickness", m.coatThickness);
   return out;
 }
 
 MtlModel toMtl(const Scene&, const CoatedConductorModel& m) {
-  return metalMtl(m.fresnel, m.roughness.along.value);
+  return metalMtl(m.fresnel, m.roughness);
 }
 
 }  // namespace bnvpl

@@ -1,6 +1,7 @@
 // Lacquered metal: GGX metal below a dielectric coat.
 #pragma once
 
+#include "transport/bsdf/coat_absorption.h"
 #include "transport/bsdf/ggx/reflection.h"
 
 namespace bnvpl {
@@ -8,11 +9,12 @@ namespace bnvpl {
 // The metal seen through the coat: theory.md, eq. 1.
 struct CoatedMetal {
   GgxReflection metal;
-  float ior = 1.5f, alpha = 0.0f;  // the coat's
+  CoatAbsorption absorption;  // the coat's
+  float alpha = 0.0f;         // the coat's
 
   bool smooth() const { return metal.smooth(); }
   LobeGroup group() const { return metal.group(); }
-  float coat(float cosine) const { return dielectricAlbedo(cosine, alpha, ior); }
+  float coat(float cosine) const { return dielectricAlbedo(cosine, alpha, absorption.ior); }
   Vec3 through(Vec3 wo, Vec3 wi, float cosFacet) const;
   Vec3 value(Vec3 wo, Vec3 wi, TransportMode transport) const;
   float pdf(Vec3 wo, Vec3 wi) const { return metal.pdf(wo, wi); }

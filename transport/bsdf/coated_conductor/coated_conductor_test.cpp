@@ -45,6 +45,11 @@ TEST(CoatedConductor, NormalIncidenceHasTheClosedForm) {
               m = fresnelConductor(1.0f, 0.2f / 1.5f, 3.91f / 1.5f);
   EXPECT_NEAR(furnace(materialOf(lacquer(0, 0)), {0, 0, 1}).x,
               r + (1 - r) * (1 - r) * m / (1 - m * r), 1e-3f);
+  CoatedConductorModel thick = lacquer(0, 0);  // light crosses the coat twice for each reflection
+  thick.coatThickness = Scalar(0.5f);
+  const float kept = m * std::exp(-1.0f);
+  EXPECT_NEAR(furnace(materialOf(thick), {0, 0, 1}).x,
+              r + (1 - r) * (1 - r) * kept / (1 - kept * r), 1e-3f);
 }
 
 }  // namespace

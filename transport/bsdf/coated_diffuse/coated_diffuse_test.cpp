@@ -44,6 +44,41 @@ TEST(CoatedDiffuse, SmoothCoatHasTheClosedForm) {
   }
 }
 
+// A walk between coat and base as pbrt's: light that crosses the coat at cosine c keeps
+// exp(-thickness / c). Returns what leaves of what arrives along wo.
+float walked(float rho, float thickness, float cosine) {
+  const float ior = 1.5f, reflected = fresnelDielectric(cosine, ior);
+  const auto kept = [&](float c) { return std::exp(-thickness / c); };
+  constexpr int kWalks = 40000;
+  double out = 0.0;
+  for (int i = 0; i < kWalks; ++i) {
+    Rng rng(3, uint64_t(i));
+    float weight = (1.0f - reflected) * kept(refractedCosine(cosine, ior));
+    while (weight > 1e-4f) {
+      const float c = std::sqrt(std::max(1e-6f, rng.next()));  // Lambert's law
+      weight *= rho * kept(c);
+      const float back = fresnelDielectric(c, 1.0f / ior);
+      out += double{weight * (1.0f - back)};
+      weight *= back * kept(c);
+    }
+  }
+  return reflected + float(out / kWalks);
+}
+TEST(CoatedDiffuse, ThickCoatsAbsorbAsAWalkThroughThemDoes) {
+  for (const float rho : {0.3f, 0.9f}) {
+    for (const float thickness : {0.01f, 0.1f, 0.5f, 2.0f}) {
+      CoatedDiffuseModel m = plastic(Vec3(rho), 0.0f);
+      m.thickness = Scalar(thickness);
+      for (const Vec3 wo : views()) {
+        const float expected = walked(rho, thickness, wo.z);
+        EXPECT_NEAR(furnace(materialOf(m), wo).x, expected, 0.01f * expected + 0.002f)
+            << rho << " " << thickness << " " << wo.z;
+      }
+      check(materialOf(m), "thick plastic " + std::to_string(thickness));
+    }
+  }
+}
+
 TEST(CoatedDiffuse, WithoutACoatIsLambert) {
   const Scene scene = sceneOf(materialOf(plastic(Vec3(0.5f), 0.3f, 1.0f)));
   const SurfacePoint p = seenFrom(views()[1]);

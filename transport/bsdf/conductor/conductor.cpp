@@ -59,8 +59,6 @@ ModelReport describe(const Scene&, const ConductorModel& m) {
   return out;
 }
 
-MtlModel toMtl(const Scene&, const ConductorModel& m) {
-  return metalMtl(m.fresnel, m.roughness.along.value);
-}
+MtlModel toMtl(const Scene&, const ConductorModel& m) { return metalMtl(m.fresnel, m.roughness); }
 
 }  // namespace bnvpl

@@ -4,13 +4,20 @@
 
 namespace bnvpl {
 
+float alphaOf(Roughness::Alpha mapping, float roughness) {
+  switch (mapping) {
+    case Roughness::Alpha::Same:
+      return roughness;
+    case Roughness::Alpha::Square:
+      return roughness * roughness;
+    case Roughness::Alpha::Root:
+      return std::sqrt(roughness);
+  }
+  return roughness;
+}
+
 Ggx ggxOf(const Roughness& roughness, const MaterialInputs& inputs) {
-  const auto alpha = [&](const Scalar& s) {
-    const float r = inputs.share(s);
-    return roughness.alpha == Roughness::Alpha::Square ? r * r
-           : roughness.alpha == Roughness::Alpha::Root ? std::sqrt(r)
-                                                       : r;
-  };
+  const auto alpha = [&](const Scalar& s) { return alphaOf(roughness.alpha, inputs.share(s)); };
   const Ggx ggx{alpha(roughness.along), alpha(roughness.across)};
   if (ggx.smooth()) return ggx;
   return {std::max(kSmoothAlpha, ggx.alongX), std::max(kSmoothAlpha, ggx.alongY)};

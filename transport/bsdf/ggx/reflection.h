@@ -7,6 +7,9 @@
 
 namespace bnvpl {
 
+// GGX alpha of a roughness in [0, 1].
+float alphaOf(Roughness::Alpha mapping, float roughness);
+
 Ggx ggxOf(const Roughness& roughness, const MaterialInputs& inputs);
 
 // Fresnel reflectance of a facet as a function of the cosine. On any interval of cosines its

@@ -12,7 +12,7 @@ namespace bnvpl::pbrt {
 
 namespace {
 
-constexpr size_t kDeepestInclude = 64, kMaxIncludes = 10'000;
+constexpr size_t kMaxIncludeDepth = 64, kMaxIncludes = 10'000;
 constexpr size_t kMaxAttributes = 64;  // limit on parameters of Attribute for one target
 
 }  // namespace
@@ -68,9 +68,9 @@ void Parser::readFile(const fs::path& file, const Place* from) {
   const fs::path real = realPath(file);
   if (std::find(reading_.begin(), reading_.end(), real) != reading_.end())
     failAt(*from, file.string() + " includes itself; remove one of the Includes");
-  if (reading_.size() == kDeepestInclude || included_ == kMaxIncludes) {
-    failAt(*from, reading_.size() == kDeepestInclude ? "Includes lie more than 64 deep"
-                                                     : "more than 10000 Includes");
+  if (reading_.size() == kMaxIncludeDepth || included_ == kMaxIncludes) {
+    failAt(*from, reading_.size() == kMaxIncludeDepth ? "Includes lie more than 64 deep"
+                                                      : "more than 10000 Includes");
   }
   if (from && !isRegularFile(file))
     failAt(*from, file.string() + ": " + whyUnreadable(file, "file") + "; check its name");

@@ -94,6 +94,6 @@ extern const CompensateMethod method{
     .make = make,
     .counters = kCounters,
     .oneSize = true,
-    .sharesPixels = true};
+    .correlatesPixels = true};
 
 }  // namespace bnvpl::methods::compensate::local

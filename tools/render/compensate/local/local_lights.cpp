@@ -4,7 +4,7 @@
 #include <array>
 
 #include "core/sampling.h"
-#include "transport/direct_light.h"
+#include "transport/direct_light/direct_light.h"
 #include "transport/virtual_light/spherical/spherical_transfer.h"
 #include "transport/walk.h"
 
@@ -108,7 +108,7 @@ void LocalLights::findRadiance(const SurfacePoint& hit, Rng& rng, Light& light,
     if (!bsdf.hasRough()) return;
     const bool first = vertices == 1;
     if (first) {
-      light.leaving = bsdf.roughLeaving();
+      light.leaving = bsdf.exitantFactor();
       if (light.leaving) light.towardsShooter = light.leaving->towards(point.wo);
     }
     const unsigned lightRays = first ? kFirstLightRays : kLaterLightRays;

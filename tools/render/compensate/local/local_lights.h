@@ -51,7 +51,7 @@ class LocalLights {
     Vec3 radiance = {},
          clamped = {};  // light that leaves towards the shooter; what the bound took from it
     // How the light depends on direction; unknown where empty or where `towardsShooter` is 0.
-    std::optional<RoughLeaving> leaving = {};
+    std::optional<ExitantFactor> leaving = {};
     float towardsShooter = 0.0f;
   };
 

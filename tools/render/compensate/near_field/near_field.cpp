@@ -111,10 +111,13 @@ Compensation make(const CompensateInputs& in, const Values&) {
 }  // namespace
 
 extern const CompensateMethod method{
-    "near-field",
-    "sampled rays add the light that the clamp removes and that comes from areas without a VPL",
-    {},
-    make};
+    .name = "near-field",
+    .summary =
+        "sampled rays add the light that the clamp removes and that comes from areas "
+        "without a VPL",
+    .options = {},
+    .make = make,
+    .bytesPerVpl = 800.0};
 
 }  // namespace methods::compensate::near_field
 

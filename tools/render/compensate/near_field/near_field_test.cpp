@@ -204,24 +204,23 @@ TEST(NearField, MoreRaysLowerTheNoiseAndKeepTheMean) {
   World world("cornell/scene.toml");
   world.scene.film = {32, 32};
   const VplTable lit = litVpls(world, {{"count", "300"}});
-  const auto render = [&](const char* rays, const char* seed) {
-    return renderVpls(world, lit,
-                      with(kPlainRender, {{"compensate", "near-field"},
-                                          {"clamp", "2"},
-                                          {"near-field-rays", rays},
-                                          {"seed", seed},
-                                          {"only", "indirect"}}));
+  const auto render = [&](const char* rays) {
+    const Given options{{"compensate", "near-field"},
+                        {"clamp", "2"},
+                        {"near-field-rays", rays},
+                        {"only", "indirect"}};
+    return remembered([&, options](uint64_t seed) {
+      return renderVpls(world, lit, with(with(kPlainRender, options), {{"seed", typed(seed)}}))
+          .image;
+    });
   };
-  std::array<double, 2> spread{}, mean{};
-  for (const unsigned few : {0u, 1u}) {
-    const char* rays = few ? "1" : "16";
-    const RenderResult first = render(rays, "1"), second = render(rays, "2");
-    const std::vector<float>&x = *first.image.find("G"), &y = *second.image.find("G");
-    for (size_t i = 0; i < x.size(); ++i) spread[few] += std::pow(double{x[i]} - double{y[i]}, 2);
-    mean[few] = first.stats.indirect + second.stats.indirect;
+  const Render many = render("16"), one = render("1");
+  EXPECT_LT(noiseOf(many, 3), std::sqrt(0.7) * noiseOf(one, 3));
+  double manyMean = 0.0, oneMean = 0.0;
+  for (const uint64_t seed : {1, 2, 3, 4, 5, 6}) {
+    manyMean += meanOf(many(seed)), oneMean += meanOf(one(seed));
   }
-  EXPECT_NEAR(mean[1] / mean[0], 1.0, 0.02);
-  EXPECT_LT(spread[0], 0.7 * spread[1]);
+  EXPECT_NEAR(oneMean / manyMean, 1.0, 0.02);
 }
 
 // Few shadow rays find a sky through a window; the rays that compensate for VPLs find it too.
@@ -238,7 +237,7 @@ TEST(NearField, ItsRaysReduceTheNoiseOfDirectLight) {
           with(kPlainDirect, {{"compensate", compensate}, {"spp", "8"}, {"seed", typed(seed)}});
       return renderVpls(world, {}, options).image;
     };
-    return std::pow(noiseOf(shown, 4), 2);
+    return std::pow(noiseOf(shown, 4, 1.0), 2);
   };
   EXPECT_LT(noise("near-field"), 0.3 * noise("none"));
 }

@@ -64,7 +64,8 @@ class AdaptiveTree {
   }
 
  private:
-  std::optional<Descent> draw(uint32_t node, Vec3 at, Vec3 normal, double u, Gathered& out) const {
+  std::optional<VplSample> draw(uint32_t node, Vec3 at, Vec3 normal, double u,
+                                Gathered& out) const {
     return descend(
         tree_, node, u, [&](const LightNode& left, const LightNode& right) -> std::optional<float> {
           out.counts[1] += 2;

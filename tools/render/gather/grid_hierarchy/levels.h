@@ -34,8 +34,8 @@ struct Level {
   }
 };
 
-// From the VPLs to the coarsest grid. `alpha`: distance up to which a level counts fully, in its
-// cells. Random numbers choose the members.
+// The levels from the VPLs to the coarsest grid. `alpha`: distance up to which a level counts
+// fully, in its cells. Random numbers choose the members.
 std::vector<Level> makeLevels(const VplLights& vpls, float alpha, uint64_t key);
 
 }  // namespace bnvpl::methods::gather::grid_hierarchy

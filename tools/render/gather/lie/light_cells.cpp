@@ -33,10 +33,7 @@ void append(std::vector<LightRun>& runs, const LightNode& n) {
 class CellBuilder {
  public:
   CellBuilder(const GatherInputs& in, const CellOptions& options, LightCells& out)
-      : in_(in),
-        options_(options),
-        key_(streamKey(in.seed, RandomStream::LightTree) + 3),
-        out_(out) {}
+      : in_(in), options_(options), key_(streamKey(in.seed, RandomStream::LightCells)), out_(out) {}
 
   void run() {
     placePoints();

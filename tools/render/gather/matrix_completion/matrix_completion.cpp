@@ -39,8 +39,9 @@ std::vector<std::span<const uint32_t>> partsOf(std::span<const uint32_t> receive
 
 Gather make(const GatherInputs& in, const Values& options) {
   const auto plan = std::make_shared<const SlicePlan>(makeSlicePlan(in, options));
-  const Complete complete =
-      options[kCompletionOption] == "columns" ? completeFromColumns : completeBySeparation;
+  const Complete complete = options.meet(valueIs(kCompletionOption, "columns"))
+                                ? completeFromColumns
+                                : completeBySeparation;
   return {.tile =
               [in, plan, complete, share = options[kShareOption]](const TileReceivers& tile,
                                                                   std::span<Gathered> out) {
@@ -54,8 +55,9 @@ Gather make(const GatherInputs& in, const Values& options) {
                       plan->draws[slice].of(tile, tile.firstSample);
                   for (const std::span<const uint32_t> part : partsOf(receivers)) {
                     SliceMatrix matrix(in, tile, {part.begin(), part.end()}, out);
-                    complete(matrix, matrix.byBrightness(turn), share,
-                             random64(tile.key, slice, part.front()));
+                    complete(
+                        matrix, matrix.byBrightness(turn), share,
+                        random64(tile.key, uint64_t{slice} << 32 | part.front(), kDimMatrixPart));
                   }
                 }
               },

@@ -98,7 +98,7 @@ struct Plan {
 Plan planOf(const GatherInputs& in, const Values& options) {
   Plan plan;
   if (in.vpls.size() == 0) return plan;
-  Rng rng(streamKey(in.seed, RandomStream::LightTree) + 2, 0);
+  Rng rng(streamKey(in.seed, RandomStream::Mrcs), 0);
   const std::vector<SurfacePoint> rows = rowPoints(in.filmPoints(), options[kRowsOption], rng);
   plan.rows = rows.size();
   const Columns columns = columnsAt(in, rows, "rows", kRowsOption.name);

@@ -4,7 +4,7 @@ namespace bnvpl::test {
 namespace {
 
 TEST(Mrcs, HasTheMeanOfAllVpls) {
-  expectMeanOfAll("mrcs", 0.02, {{"rows", "100"}, {"columns", "200"}});
+  expectMeanOfAll("mrcs", 0.02, {{"rows", "100"}, {"columns", "200"}}, true, 24);
 }
 
 TEST(Mrcs, HasTheEnergyInFurnaceAndOfOneBounce) {

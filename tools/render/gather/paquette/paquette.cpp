@@ -158,8 +158,8 @@ class Octree {
 };
 
 Gather make(const GatherInputs& in, const Values& options) {
-  const auto tree =
-      std::make_shared<const Octree>(in, options[kErrorOption], options[kShadowsOption] != "none");
+  const auto tree = std::make_shared<const Octree>(in, options[kErrorOption],
+                                                   !options.meet(valueIs(kShadowsOption, "none")));
   return gatherEach([tree](const Bsdf& bsdf, const LightGroupSink&) { return tree->gather(bsdf); });
 }
 

@@ -25,15 +25,10 @@ struct DirectionGrid {
   float pdfInCell(float cosTheta) const {
     return pdfCosineHemisphere(cosTheta) * static_cast<float>(cells());
   }
-  // Cell of a unit direction with z > 0, by the inverse of sampleDisk().
+  // Cell of a unit direction with z > 0.
   uint32_t cellOf(Vec3 d) const {
-    const bool wide = std::fabs(d.x) > std::fabs(d.y);
-    const float main = wide ? d.x : d.y, other = wide ? d.y : d.x;
-    if (main == 0.0f) return indexOf(0.5f) * side + indexOf(0.5f);
-    const float r = std::copysign(std::sqrt(d.x * d.x + d.y * d.y), main);
-    const float across = r * std::atan(other / main) * (4.0f / kPi);
-    const uint32_t along = indexOf(0.5f * r + 0.5f), beside = indexOf(0.5f * across + 0.5f);
-    return wide ? beside * side + along : along * side + beside;
+    const Point2 at = invertCosineHemisphereSample(d);
+    return indexOf(at.y) * side + indexOf(at.x);
   }
 
  private:

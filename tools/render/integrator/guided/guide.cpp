@@ -28,8 +28,6 @@ constexpr double kBytesPerRay = 40.0;
 // Lower bound of the albedo. Incident light that is inferred from darker VPLs is mostly noise.
 constexpr float kMinAlbedo = 0.01f;
 
-Vec3 toLocal(const Frame& b, Vec3 v) { return {dot(v, b.s), dot(v, b.t), dot(v, b.n)}; }
-
 uint32_t sideOf(uint64_t raysEach) {
   auto side = static_cast<uint32_t>(std::sqrt(static_cast<double>(raysEach)));
   side = std::min(side, kMaxSide);
@@ -53,13 +51,13 @@ Guide::Guide(const VplTable& lit, const Accelerator& accel, const LightSet& ligh
   regions_ = RegionGrid(position_, normal_, lit.radius);
   const ProgressFn::Phase phase = progress.beginPhase("guiding distributions", lit.size());
   const uint64_t key = streamKey(seed, RandomStream::Guide);
-  std::vector<Learnt> learnt(lit.size() * each);
+  std::vector<IncidentSample> samples(lit.size() * each);
   parallelFor(lit.size(), 16, [&](size_t i) {
     learn(accel, lights, key, static_cast<uint32_t>(i), lit.radius[i],
-          std::span(learnt).subspan(i * each, each));
+          std::span(samples).subspan(i * each, each));
     if (progress) progress(1);
   });
-  fillCdfs(smooth(near, learnt));
+  fillCdfs(smooth(near, samples));
 }
 
 // Exitance over pi around each VPL. It is averaged over the VPLs near it, as one alone may have few
@@ -84,7 +82,7 @@ void Guide::findRadiance(const VplTable& lit, const NearSurfaces& near) {
 // Estimates the incident light of each stratum by one ray: emission times its MIS weight against
 // light sampling, and the radiance that leaves the VPLs.
 void Guide::learn(const Accelerator& accel, const LightSet& lights, uint64_t key, uint32_t region,
-                  float radius, std::span<Learnt> learnt) const {
+                  float radius, std::span<IncidentSample> samples) const {
   Rng rng(key, region);
   const Frame frame(normal_[region]);
   const Vec3 centre = accel.offsetOrigin(position_[region], normal_[region]);
@@ -102,7 +100,7 @@ void Guide::learn(const Accelerator& accel, const LightSet& lights, uint64_t key
     const Vec3 towards = frame.toWorld(local);
     const SpecularPath path =
         followSpecularPath(accel, lights, from, towards, {pdfCosineHemisphere(local.z), from}, rng);
-    Vec3 found = path.emissionFirst + path.directLater;
+    Vec3 found = path.firstSegmentEmission + path.lightOverSpecular;
     if (path.rough) {
       const uint32_t at = regionAt(path.hit);
       if (at != kNone) {
@@ -114,13 +112,14 @@ void Guide::learn(const Accelerator& accel, const LightSet& lights, uint64_t key
       }
     }
     const float value = mean(found);
-    learnt[k] = {std::isfinite(value) ? value : 0.0f, grid_.cellOf(local)};
+    samples[k] = {std::isfinite(value) ? value : 0.0f, grid_.cellOf(local)};
   }
 }
 
 // Means of each cell over the rays of neighbouring regions. The mean of the cell's stratum counts
 // as one more ray.
-std::vector<float> Guide::smooth(const NearSurfaces& near, std::span<const Learnt> learnt) const {
+std::vector<float> Guide::smooth(const NearSurfaces& near,
+                                 std::span<const IncidentSample> samples) const {
   const uint32_t cells = grid_.cells(), each = strata_.cells();
   struct Mean {
     float sum = 0.0f, count = 0.0f;
@@ -133,10 +132,10 @@ std::vector<float> Guide::smooth(const NearSurfaces& near, std::span<const Learn
     const Frame frame(normal_[i]);
     near.forEach(i, [&](uint32_t k) {
       const Frame other(normal_[k]);
-      for (const Learnt& l : learnt.subspan(size_t{k} * each, each)) {
+      for (const IncidentSample& l : samples.subspan(size_t{k} * each, each)) {
         uint32_t cell = l.cell;
         if (normal_[k] != normal_[i]) {
-          const Vec3 local = toLocal(frame, other.toWorld(grid_.direction(cell, 0.5f, 0.5f)));
+          const Vec3 local = frame.toLocal(other.toWorld(grid_.direction(cell, 0.5f, 0.5f)));
           if (local.z <= 0.0f) continue;
           cell = grid_.cellOf(local);
         }
@@ -178,7 +177,7 @@ Vec3 Guide::sample(uint32_t region, Point2 at, float& pdf) const {
 }
 
 float Guide::pdf(uint32_t region, Vec3 wi) const {
-  const Vec3 local = toLocal(Frame(normal_[region]), wi);
+  const Vec3 local = Frame(normal_[region]).toLocal(wi);
   if (local.z <= 0.0f) return 0.0f;
   return cdfProbability(cdf(region), grid_.cellOf(local)) * grid_.pdfInCell(local.z);
 }

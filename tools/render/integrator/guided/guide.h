@@ -9,8 +9,8 @@
 #include "spatial/near_surfaces.h"
 #include "spatial/region_grid.h"
 #include "tools/render/integrator/guided/direction_grid.h"
-#include "tools/render/tile/directions.h"
-#include "transport/lights.h"
+#include "tools/render/tile/reuse/directions.h"
+#include "transport/lights/lights.h"
 
 namespace bnvpl {
 
@@ -27,7 +27,7 @@ class Guide : public DirectionGuide {
   // Whether rays found light that arrives in the region.
   bool knows(uint32_t region) const { return region != kNone && onward_[region] > 0.0f; }
 
-  // For regions that the guide knows.
+  // Both are defined for regions that the guide knows.
   Vec3 sample(uint32_t region, Point2 at, float& pdf) const override;
   float pdf(uint32_t region, Vec3 wi) const override;
 
@@ -38,14 +38,15 @@ class Guide : public DirectionGuide {
 
  private:
   void findRadiance(const VplTable& lit, const NearSurfaces& near);
-  // Result of one ray.
-  struct Learnt {
+  // Incident light that one ray found.
+  struct IncidentSample {
     float radiance;
     uint32_t cell;
   };
   void learn(const Accelerator& accel, const LightSet& lights, uint64_t key, uint32_t region,
-             float radius, std::span<Learnt> learnt) const;
-  std::vector<float> smooth(const NearSurfaces& near, std::span<const Learnt> learnt) const;
+             float radius, std::span<IncidentSample> samples) const;
+  std::vector<float> smooth(const NearSurfaces& near,
+                            std::span<const IncidentSample> samples) const;
   void fillCdfs(const std::vector<float>& radiance);
   std::span<const float> cdf(uint32_t region) const {
     return std::span(cdf_).subspan(size_t{region} * grid_.cells(), grid_.cells());

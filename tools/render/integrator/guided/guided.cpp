@@ -12,8 +12,7 @@ namespace bnvpl::methods::integrator::guided {
 
 namespace {
 
-constexpr Needs kRaysAreSent{Condition{"only", "all|indirect"}, Condition{"direct-samples", "1"}};
-// before those that need it
+constexpr Needs kRaysAreSent{kIndirectIsShown, valueIs(kDirectSamplesOption, "1")};
 constexpr auto kGuideShareOption =
     neededBy(kRaysAreSent, realOption("guide-share", "0.5", 0, 0.99, "share of the directions",
                                       "sampled from the guide; the others from the BSDF"));
@@ -51,11 +50,11 @@ uint64_t raysEach(const IntegratorInputs& in, const Values& options) {
                                 (kPathsPerRay * std::max<size_t>(1, in.lit.size())));
 }
 
-// For each sample, so that the noise of photons falls with --spp as all other noise does.
+// Photons for each sample, so that their noise falls with --spp until they are as many as may be
+// sent.
 constexpr uint64_t kCausticPhotons = 4;
 uint64_t causticPhotons(const IntegratorInputs& in, const Values& options) {
-  const uint64_t photons = kCausticPhotons * in.pixels() * preparedSpp(options);
-  return options[kSppOption] > kMaxPreparedSpp ? std::min(kMaxCausticPhotons, photons) : photons;
+  return std::min(kMaxCausticPhotons, kCausticPhotons * in.pixels() * preparedSpp(options));
 }
 
 // Objects that live as long as the integrator. Each may borrow from those before it.
@@ -89,7 +88,7 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   }
   if (indirect) tile.reuse = static_cast<unsigned>(options[kReuseOption]);
   const FilmRays filmRays(in.accel, in.lights, in.filter, tile.spatialLights, in.seed);
-  const bool controlled = indirect && options[kControlOption] == "vpls";
+  const bool controlled = indirect && options.meet(valueIs(kControlOption, "vpls"));
   const FilmPoints filmPoints =
       controlled || in.only != Only::Indirect ? filmRays.all() : FilmPoints{};
   if (controlled) tile.control = makeControlVariate(in, filmPoints);

@@ -47,23 +47,25 @@ void GuidedRays::follow(const FirstSegment& start, float expected, bool reuse,
                         std::span<Vec3> groups, RayContributions& out) const {
   Rng rng = start.rng;
   SpecularLightSampling sampling{nullptr, &spatialLights_};
-  if (only_ != Only::Indirect) sampling.emissionFirst = out.directGroups().times(start.throughput);
-  if (only_ != Only::Direct) sampling.directLater = out.indirectGroups().times(start.throughput);
+  if (only_ != Only::Indirect)
+    sampling.firstSegmentEmission = out.directGroups().times(start.throughput);
+  if (only_ != Only::Direct)
+    sampling.lightOverSpecular = out.indirectGroups().times(start.throughput);
   SpecularPath vertex = followSpecularPath(accel_, lights_, *start.hit, start.direction,
                                            start.arrival, rng, sampling);
-  if (only_ != Only::Indirect) out.direct += start.throughput * vertex.emissionFirst;
+  if (only_ != Only::Indirect) out.direct += start.throughput * vertex.firstSegmentEmission;
   if (only_ == Only::Direct) return;
   const auto add = [&](Vec3 light) { out.indirect += light, out.compensated += light; };
-  add(start.throughput * vertex.directLater);
+  add(start.throughput * vertex.lightOverSpecular);
   if (maxBounces_ == 0 || !vertex.rough) return;
 
   const Bsdf first(accel_.scene(), vertex.hit);
   ReusedVertex reused{
       vertex.hit.position, vertex.hit.ng, {}, {}, UncoveredShare{INFINITY, INFINITY, {}}};
   Vec3 diffuse;
-  float towardsStart = 0.0f;  // factor of RoughLeaving
+  float towardsStart = 0.0f;  // factor of ExitantFactor
   if (reuse && vertex.specularBounces == 0) {
-    const std::optional<RoughLeaving> all = first.roughLeaving();
+    const std::optional<ExitantFactor> all = first.exitantFactor();
     const DiffusePart part = first.diffusePart();
     reused.leaving = all.value_or(part.leaving);
     if (!all) diffuse = part.value;
@@ -122,7 +124,7 @@ LightWithPart GuidedRays::tracePath(const Bsdf& first, const FirstSegment& start
                                       rayPdf, numbers);
     }
 
-    float survival = bsdf.reflectance();
+    float survival = bsdf.survivalProbability();
     if (expected > 0.0f && guide_.knows(region)) {
       const float contribution =
           mean(start.throughput * weight.all) * mean(bsdf.roughAlbedo()) * guide_.onward(region);
@@ -139,7 +141,7 @@ LightWithPart GuidedRays::tracePath(const Bsdf& first, const FirstSegment& start
     vertex = followSpecularPath(accel_, lights_, ray.origin, ray.direction,
                                 {next.pdf, bsdf.point().position, LightChoice::One, lights}, rng,
                                 {nullptr, &spatialLights_, sinkTo(emission), sinkTo(emission)});
-    leaving += weight * (vertex.emissionFirst + vertex.directLater);
+    leaving += weight * (vertex.firstSegmentEmission + vertex.lightOverSpecular);
     for (uint32_t g = 0; g < lightGroups; ++g) {
       all.times(weight.all).add(g, emission[g]);
       part.times(weight.part).add(g, emission[g]);

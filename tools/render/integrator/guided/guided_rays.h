@@ -4,7 +4,7 @@
 
 #include "tools/render/integrator/guided/guide.h"
 #include "tools/render/tile/indirect_rays.h"
-#include "transport/spatial_light_sampler.h"
+#include "transport/direct_light/spatial_light_sampler.h"
 #include "transport/specular_path.h"
 
 namespace bnvpl {

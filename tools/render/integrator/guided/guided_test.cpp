@@ -1,13 +1,13 @@
 // The guided path tracer against the path tracer, whose image it must have whatever the VPLs are,
 // and guarantees of its guide.
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <cmath>
 
-#include "scene/scene_builder.h"
+#include "scene/builder/scene_builder.h"
 #include "tests/render/lit_rooms.h"
 #include "tests/support/pipeline.h"
+#include "tests/support/threads.h"
 #include "tests/support/z_test.h"
 #include "tools/render/integrator/guided/guide.h"
 
@@ -275,8 +275,10 @@ TEST(Guided, HasLessNoiseWhereLightComesRoundACorner) {
   World world("u-shape/scene.toml");
   world.scene.film = {32, 24};
   const VplTable lit = litVpls(world, {{"count", "600"}}, {{"photons", "200k"}}, {});
-  const Given options{{"spp", "64"}, {"only", "indirect"}};
-  EXPECT_LT(noiseOf(guided(world, lit, options)), 0.7 * noiseOf(paths(world, options)));
+  const Given options{{"spp", "16"}, {"only", "indirect"}};
+  const Given alone = with(options, {{"guide-share", "0"}});  // equal but for the guide
+  EXPECT_LT(noiseOf(guided(world, lit, options), 3),
+            0.7 * noiseOf(guided(world, lit, alone), 3));
 }
 
 TEST(Guided, IsTheSameForAnyThreads) {
@@ -284,8 +286,10 @@ TEST(Guided, IsTheSameForAnyThreads) {
   const VplTable lit = fewLit(world);
   std::vector<std::vector<float>> green;
   for (const size_t threads : {1u, 2u, 7u}) {
-    tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    green.push_back(*guided(world, lit, {{"spp", "32"}})(1).find("G"));
+    const Image image = withThreads(threads, [&] {
+      return guided(world, lit, {{"spp", "32"}})(1);
+    });
+    green.push_back(*image.find("G"));
   }
   EXPECT_EQ(green[0], green[1]);
   EXPECT_EQ(green[0], green[2]);

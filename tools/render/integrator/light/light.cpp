@@ -21,7 +21,7 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
     const auto tracer =
         std::make_shared<const LightTracer>(in.accel, in.lights, in.filter, maxBounces, in.seed);
     result.idle = {"adaptive"};  // photons cannot be aimed at tiles
-    result.tracePhotons = [tracer](uint64_t begin, uint64_t end, Splats& out) {
+    result.splatPhotons = [tracer](uint64_t begin, uint64_t end, Splats& out) {
       tracer->follow(begin, end, out);
     };
   }
@@ -37,6 +37,6 @@ extern const IntegratorMethod method{
     kOptions,
     make,
     /*needsVpls=*/false,
-    /*tracesPhotons=*/true};
+    /*splatsPhotons=*/true};
 
 }  // namespace bnvpl::methods::integrator::light

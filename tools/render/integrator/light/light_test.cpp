@@ -121,18 +121,19 @@ TEST(LightTracer, AgreesOnShadingNormals) {
 TEST(LightTracer, HasLessNoiseWhereLightComesRoundACorner) {
   World world("u-shape/scene.toml");
   world.scene.film = {32, 24};
-  FilmStats path, light;  // statistics of the last image
-  const auto noise = [&](const char* integrator, const char* spp, FilmStats& stats) {
-    return noiseOf([&](uint64_t seed) {
+  double path = 0.0, light = 0.0;  // sums of indirect light
+  const auto noise = [&](const char* integrator, const char* spp, double& indirect) {
+    const Render render = [&](uint64_t seed) {
       const RenderResult result = renderWithout(
           world, integrator, {{"spp", spp}, {"seed", typed(seed)}, {"only", "indirect"}});
-      stats = result.stats;
+      indirect += result.stats.indirect;
       return result.image;
-    });
+    };
+    return noiseOf(render, 4);
   };
-  const double byPaths = noise("path", "1024", path), byPhotons = noise("light", "512", light);
+  const double byPaths = noise("path", "256", path), byPhotons = noise("light", "128", light);
   EXPECT_LT(byPhotons, 0.5 * byPaths);
-  EXPECT_NEAR(light.indirect / path.indirect, 1.0, 0.05);
+  EXPECT_NEAR(light / path, 1.0, 0.05);
 }
 
 // Surfaces seen over mirrors, light that arrives via mirrors, and gloss lit by photons.

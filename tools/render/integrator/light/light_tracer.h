@@ -3,8 +3,8 @@
 
 #include "tools/render/pixel_filter.h"
 #include "tools/render/splat/splat.h"
-#include "transport/lights.h"
-#include "transport/photon_walk.h"
+#include "transport/lights/lights.h"
+#include "transport/photons/photon_walk.h"
 
 namespace bnvpl {
 

@@ -60,7 +60,7 @@ struct NearFieldRays::Path {
   std::optional<Uncovered> atFirstHit = {};
   float roughImportance = 1.0f;
   std::optional<ReusedVertex> reused = {};
-  float towardsStart = 0.0f;  // factor of its RoughLeaving
+  float towardsStart = 0.0f;  // factor of its ExitantFactor
   // The same of each light group: `light`, and the radiance of the reused vertex.
   std::span<Vec3> lightGroups = {}, vertexGroups = {};
 
@@ -99,7 +99,7 @@ struct NearFieldRays::Path {
   // for those that reuse the vertex.
   void makeReusable(const Uncovered& uncovered, const Bsdf& bsdf) {
     if (!isFirst() || !isStraight() || !(uncovered.byDistance.within > 0.0f)) return;
-    const std::optional<RoughLeaving> leaving = bsdf.roughLeaving();
+    const std::optional<ExitantFactor> leaving = bsdf.exitantFactor();
     towardsStart = leaving ? leaving->towards(segment.hit.wo) : 0.0f;
     if (!(towardsStart > 0.0f)) return;
     addLight();
@@ -130,9 +130,11 @@ void NearFieldRays::follow(const FirstSegment& start, const ReachGrid::Lookup& c
   for (bool goesOn = true; goesOn; ++path.segments) {
     const SpecularPath& segment = path.segment;
     const bool first = path.isFirst();
-    if (first && only_ != Only::Indirect) out.direct += path.throughput * segment.emissionFirst;
+    if (first && only_ != Only::Indirect)
+      out.direct += path.throughput * segment.firstSegmentEmission;
     if (only_ == Only::Direct) break;
-    path.light = path.throughput * (segment.directLater + (first ? Vec3{} : segment.emissionFirst));
+    path.light = path.throughput *
+                 (segment.lightOverSpecular + (first ? Vec3{} : segment.firstSegmentEmission));
     Uncovered uncovered;
     if (path.choseLobes() && segment.rough) {
       uncovered = *path.atFirstHit;
@@ -168,8 +170,8 @@ void NearFieldRays::begin(Path& path, const ReachGrid::Lookup& coverLookup) cons
   }
   SpecularLightSampling sampling{nullptr, spatialLights_};
   if (only_ != Only::Indirect)
-    sampling.emissionFirst = path.out.directGroups().times(path.throughput);
-  if (only_ != Only::Direct) sampling.directLater = path.lightSink().times(path.throughput);
+    sampling.firstSegmentEmission = path.out.directGroups().times(path.throughput);
+  if (only_ != Only::Direct) sampling.lightOverSpecular = path.lightSink().times(path.throughput);
   path.segment = followSpecularPath(accel_, lights_, hit, path.start.direction, path.start.arrival,
                                     path.rng, sampling, path.roughImportance);
 }

@@ -8,7 +8,7 @@
 #include "tools/render/compensate/compensate.h"
 #include "tools/render/gather/gather.h"
 #include "tools/render/tile/indirect_rays.h"
-#include "transport/spatial_light_sampler.h"
+#include "transport/direct_light/spatial_light_sampler.h"
 #include "transport/specular_path.h"
 
 namespace bnvpl {

@@ -14,17 +14,17 @@ namespace bnvpl::methods::integrator::vpl {
 
 namespace {
 
-constexpr auto kLightOption =
-    neededBy(kIndirectIsShown, choiceOption("light", "point", kLightKinds,
-                                            "model of a VPL: a point with a bound on 1/d^2, a "
-                                            "disk, attenuation without singularity, or a sphere"));
+constexpr auto kLightOption = neededBy(
+    {kIndirectIsShown}, choiceOption("light", "point", kLightKinds,
+                                     "model of a VPL: a point with a bound on 1/d^2, a "
+                                     "disk, attenuation without singularity, or a sphere"));
 constexpr auto kClampOption = neededBy(
-    kIndirectIsShown,
+    {kIndirectIsShown},
     inTopic(Topic::Expert, realOption("clamp", "2", 0, 1000, "radii of the VPL",
                                       "radius of a VPL: 1/d^2 of a point is clamped within "
                                       "it; disks and spheres have this radius")));
 constexpr auto kNearFieldRaysOption =
-    neededBy({Condition{"only", "all|indirect"}, Condition{"direct-samples", "1"}},
+    neededBy({kIndirectIsShown, valueIs(kDirectSamplesOption, "1")},
              wholeOption("near-field-rays", "8", 1, 4096, "",
                          "BSDF rays from each shading point, for compensation and light over "
                          "specular surfaces, and with --direct-samples 1 for direct light by MIS; "
@@ -34,17 +34,17 @@ constexpr auto kReuseOption =
                 "samples of a tile that reuse the vertices of each other's near-field rays on "
                 "diffuse surfaces; 1: none");
 constexpr auto kCausticPhotonsOption =
-    neededBy(kIndirectIsShown,
+    neededBy({kIndirectIsShown},
              wholeOption("caustic-photons", "64", 0, 4096, "",
                          "photons per pixel, at most 16M in total, for light over mirrors, glass "
                          "and near-specular lobes; 0: only near-field rays find it"));
 constexpr auto kControlOption = controlOption("vpls");
 constexpr auto kDirectOption =
-    neededBy(kDirectIsShown, choiceOption("direct", "learned", "learned|each",
-                                          "shadow rays to what each tile of the film has learned "
-                                          "to see, or one to each light"));
+    neededBy({kDirectIsShown}, choiceOption("direct", "learned", "learned|each",
+                                            "shadow rays to what each tile of the film has learned "
+                                            "to see, or one to each light"));
 constexpr auto kLightRaysOption =
-    neededBy({Condition{"direct", "learned"}},
+    neededBy({valueIs(kDirectOption, "learned")},
              wholeOption("light-rays", "8", 1, 4096, "",
                          "shadow rays from each shading point with --direct-samples 1; in any "
                          "case, they set the number of rays that tiles learn from"));
@@ -146,8 +146,8 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
   tile.gathersForFilter = static_cast<bool>(gatherFilterOf(options));
   tile.gathersPixelSums = gathersPixelSums(options);
   if (indirect) addTileCompensation(in, options, compensation, gather.point, tile);
-  const bool learned = in.only != Only::Indirect && options[kDirectOption] == "learned";
-  const bool controlled = indirect && options[kControlOption] == "vpls";
+  const bool learned = in.only != Only::Indirect && options.meet(valueIs(kDirectOption, "learned"));
+  const bool controlled = indirect && options.meet(valueIs(kControlOption, "vpls"));
   const FilmPoints filmPoints = controlled || learned ? filmRays.all() : FilmPoints{};
   if (controlled) tile.control = makeControlVariate(in, filmPoints);
   addDirectLight(in, options, filmRays, filmPoints,
@@ -185,7 +185,7 @@ extern const IntegratorMethod method{"vpl",
                                      kOptions,
                                      make,
                                      /*needsVpls=*/true,
-                                     /*tracesPhotons=*/false,
+                                     /*splatsPhotons=*/false,
                                      /*gathersVpls=*/true};
 
 }  // namespace bnvpl::methods::integrator::vpl

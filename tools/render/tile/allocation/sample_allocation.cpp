@@ -25,7 +25,7 @@ struct PilotTile {
 };
 
 PilotTile samplePilot(const Scene& scene, const PixelFilter& filter, const Tiles& tiles,
-                      size_t index, uint64_t key, uint64_t spp,
+                      size_t index, uint64_t key, uint64_t spp, Only only,
                       const std::function<double(const TileSamples&)>& render) {
   const Tile tile = tiles.at(index);
   constexpr SampleRange range{0, kPilotSlots, kPilotSlots, kPilotSlots};
@@ -36,21 +36,22 @@ PilotTile samplePilot(const Scene& scene, const PixelFilter& filter, const Tiles
   }
   const auto all = static_cast<uint32_t>(std::clamp<uint64_t>(spp, kPilotSlots, 64));
   PilotTile out;
-  out.cost =
-      render({{tile.pixels(), tile.width(), tile.x0, tile.y0, 0, all, random64(key, index, 0), 0},
-              samples});
+  out.cost = render({{tile.pixels(), tile.width(), tile.x0, tile.y0, 0, all,
+                      random64(key, index, kDimPilotKey), 0},
+                     samples});
   for (uint32_t p = 0; p < tile.pixels(); ++p) {
     Vec3 sum;
     double squares = 0.0;
     for (uint32_t s = 0; s < kPilotSlots; ++s) {
-      const RadianceSample& r = samples[size_t{s} * tile.pixels() + p].radiance;
-      sum += r.direct + r.indirect;
-      squares += squared(r.direct + r.indirect);
+      const CameraSample& sample = samples[size_t{s} * tile.pixels() + p];
+      const Vec3 light = unweighted(shownRadiance(sample.radiance, only), sample.weight);
+      sum += light;
+      squares += squared(light);
     }
     out.variance += std::max(0.0, squares - squared(sum) / kPilotSlots) / (kPilotSlots - 1.0);
     out.light += sum * (1.0f / kPilotSlots);
   }
-  out.variance /= tile.pixels();
+  out.variance *= double{filter.squaredWeight()} / tile.pixels();
   out.light *= 1.0f / static_cast<float>(tile.pixels());
   return out;
 }
@@ -64,7 +65,7 @@ unsigned samplesFor(double variance, double cost, double marginalCost, unsigned 
 }
 
 std::array<unsigned, 2> samplesByParity(std::span<const PixelMoments> pixels,
-                                        const TileLayout& tile, double cost,
+                                        const TileLayout& tile, float squaredWeight, double cost,
                                         const SampleAllocation& allocation, unsigned min,
                                         unsigned max) {
   std::array<unsigned, 2> samples{};
@@ -82,7 +83,8 @@ std::array<unsigned, 2> samplesByParity(std::span<const PixelMoments> pixels,
     }
     samples[own] =
         degreesOfFreedom > 0.0
-            ? samplesFor(allocation.relative(variance / degreesOfFreedom, light * (1.0f / others)),
+            ? samplesFor(allocation.relative(double{squaredWeight} * variance / degreesOfFreedom,
+                                             light * (1.0f / others)),
                          cost, allocation.marginalCost, min, max)
             : min;
   }
@@ -90,7 +92,7 @@ std::array<unsigned, 2> samplesByParity(std::span<const PixelMoments> pixels,
 }
 
 SampleAllocation findAllocation(const Scene& scene, const PixelFilter& filter, uint64_t seed,
-                                uint64_t spp, const ProgressFn& progress,
+                                uint64_t spp, Only only, const ProgressFn& progress,
                                 const std::function<double(const TileSamples&)>& render) {
   const Tiles tiles(scene.film);
   const size_t count = std::min(kPilotTiles, tiles.count());
@@ -100,8 +102,9 @@ SampleAllocation findAllocation(const Scene& scene, const PixelFilter& filter, u
   parallelFor(count, 1, [&](size_t k) {
     // A random tile of the k-th of `count` equal parts of the film.
     const size_t begin = k * tiles.count() / count, end = (k + 1) * tiles.count() / count;
-    pilot[k] = samplePilot(scene, filter, tiles, begin + random64(key, k, 1) % (end - begin), key,
-                           spp, render);
+    pilot[k] =
+        samplePilot(scene, filter, tiles, begin + random64(key, k, kDimPilotTile) % (end - begin),
+                    key, spp, only, render);
     if (progress) progress(1);
   });
   SampleAllocation out;

@@ -71,16 +71,16 @@ struct PixelMoments {
 // Samples for the pixels of either parity of the checkerboard, from the variance of the pixels of
 // the other parity. A pixel's own samples would make its weight depend on what they found, and the
 // mean biased. The whole tile decides, as few pixels find the rare bright samples that make most
-// of the noise.
+// of the noise. `squaredWeight`: that of the pixel filter, whose weights the moments lack.
 std::array<unsigned, 2> samplesByParity(std::span<const PixelMoments> pixels,
-                                        const TileLayout& tile, double cost,
+                                        const TileLayout& tile, float squaredWeight, double cost,
                                         const SampleAllocation& allocation, unsigned min,
                                         unsigned max);
 
 // Runs the pilot: a few samples of some tiles. `render` makes the samples of a tile and returns the
-// mean cost of one. `spp`: samples per pixel of the image.
+// mean cost of one. `spp`: samples per pixel of the image, of which `only` is shown.
 SampleAllocation findAllocation(const Scene& scene, const PixelFilter& filter, uint64_t seed,
-                                uint64_t spp, const ProgressFn& progress,
+                                uint64_t spp, Only only, const ProgressFn& progress,
                                 const std::function<double(const TileSamples&)>& render);
 
 }  // namespace bnvpl

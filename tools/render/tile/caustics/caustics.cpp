@@ -8,7 +8,7 @@
 #include "tools/render/splat/add_splats.h"
 #include "tools/render/splat/film_connection.h"
 #include "transport/camera.h"
-#include "transport/photon_walk.h"
+#include "transport/photons/photon_walk.h"
 #include "transport/walk.h"
 
 namespace bnvpl {
@@ -29,7 +29,7 @@ Caustics::Caustics(const Accelerator& accel, const LightSet& lights, const Pixel
       guide_(lights) {
   for (size_t i = 0; i < groupLight_.size(); i += groups)
     light_[i / groups].groups = &groupLight_[i];
-  learnEmission(streamKey(seed, RandomStream::CausticEmission), progress);
+  learnGuide(streamKey(seed, RandomStream::CausticEmission), progress);
   chooseEmitters(streamKey(seed, RandomStream::CausticPilot), progress);
   SplatProgress done;
   const auto phase = progress.beginPhase("caustic photons", photons);
@@ -43,7 +43,7 @@ Caustics::Caustics(const Accelerator& accel, const LightSet& lights, const Pixel
 
 // The target is the light of a caustic photon on the film, and the proxy that of any photon. Until
 // the guide is there, the weights of MIS are those of photons by power.
-void Caustics::learnEmission(uint64_t key, const ProgressFn& progress) {
+void Caustics::learnGuide(uint64_t key, const ProgressFn& progress) {
   const PilotEstimator estimate = [&](const EmissionSample& e, const PhotonStart& start, Rng& rng,
                                       bool withProxy) {
     PilotContribution contribution;
@@ -61,12 +61,13 @@ void Caustics::learnEmission(uint64_t key, const ProgressFn& progress) {
                  });
     return contribution;
   };
-  uint64_t count = (photons_ + kPhotonsPerLearningPhoton - 1) / kPhotonsPerLearningPhoton;
+  uint64_t count = std::min(kMaxFirstLearningPhotons,
+                            (photons_ + kPhotonsPerLearningPhoton - 1) / kPhotonsPerLearningPhoton);
   const uint64_t most = std::min(photons_ / kPhotonsPerFurtherPhoton, kMaxLearningPhotons);
-  LearnedEmission learned = bnvpl::learnEmission(lights_, count, key, estimate, progress);
+  LearnedEmission learned = learnEmission(lights_, count, key, estimate, progress);
   for (; !learned.enough && count < most; key = mix64(key)) {
     count = std::min(4 * count, most);
-    learned = bnvpl::learnEmission(lights_, count, key, estimate, progress);
+    learned = learnEmission(lights_, count, key, estimate, progress);
   }
   useful_ = learned.useful;
   guide_ = std::move(learned.guide);
@@ -102,7 +103,7 @@ void Caustics::chooseEmitters(uint64_t key, const ProgressFn& progress) {
   }
   for (const auto& [emitter, found] : all)
     if (found.sum * found.sum >= kMinPilotPhotons * found.squares && found.sum > 0.0)
-      dense_.push_back(emitter);
+      photonEmitters_.push_back(emitter);
   emitters_ = all.size();
   chosen_ = true;
 }
@@ -135,7 +136,7 @@ PhotonMis Caustics::sharedBy(float samplesPerArea) const {
   return {.lights = &lights_,
           .rays = rays_.ofPixel * samplesPerArea,
           .photons = static_cast<float>(photons_),
-          .emitters = chosen_ ? &dense_ : nullptr,
+          .emitters = chosen_ ? &photonEmitters_ : nullptr,
           .guide = &guide_,
           .roughImportance = rays_.roughImportance};
 }
@@ -143,16 +144,17 @@ PhotonMis Caustics::sharedBy(float samplesPerArea) const {
 uint64_t Caustics::follow(uint64_t key, uint64_t index, uint64_t count, Splats& out) const {
   Rng rng(key, index);
   const double u{rng.next()};
+  float guided = 0.0f;
   const EmissionSample e =
-      guide_.draw(guide_.guides() ? (double(index) + u) / double(count) : u, rng);
-  const float guided = guide_.density(e);
+      guide_.draw(guide_.guides() ? (double(index) + u) / double(count) : u, rng, guided);
   const double probability = double{lights_.pickProbability(e.light)} * double{guided};
   if (!(probability > 0.0)) return kNoEmitter;
   Photon photon{
       e, guided, lights_.emit(e.light, e.at), {}, lights_.hittable(e.light), lensPoint(rng)};
   const uint64_t emitter =
       photon.hittable ? emitterOf(lights_, e.light, -photon.start.direction) : kNoEmitter;
-  if (emitter == kNoEmitter ? !chosen_ : chosen_ && !std::ranges::binary_search(dense_, emitter))
+  if (emitter == kNoEmitter ? !chosen_
+                            : chosen_ && !std::ranges::binary_search(photonEmitters_, emitter))
     return emitter;  // the pilot does not need it, or its light is left to rays
   photon.flux = photon.start.flux * static_cast<float>(1.0 / (probability * double(photons_)));
   trace(photon, rng, out);
@@ -175,15 +177,15 @@ float Caustics::shadowRayRatio(const Bsdf& vertex, const Photon& photon) const {
 
 // Rays see the vertex from where the photon goes.
 void Caustics::addVertex(const Bsdf& vertex, Vec3 wi, bool countsShadowRays, const Photon& photon,
-                         RaysOfWay& rays) const {
-  rays.later *= rays.lastLater;
-  rays.last = rays.lastLater = 1.0f;
+                         CompetingPath& rays) const {
+  rays.specularBefore *= rays.specularAtLastLater;
+  rays.specularAtLast = rays.specularAtLastLater = 1.0f;
   if (!photon.hittable || vertex.transmits() || !(vertex.hasRough() || countsShadowRays)) return;
   SurfacePoint point = vertex.point();
   point.wo = wi;
   const Bsdf seen(accel_.scene(), point);
-  rays.last = PhotonMis::specularProbability(seen, rays_.roughImportance);
-  rays.lastLater = PhotonMis::specularProbability(seen, 1.0f);
+  rays.specularAtLast = PhotonMis::sharedSpecularProbability(seen, rays_.roughImportance);
+  rays.specularAtLastLater = PhotonMis::sharedSpecularProbability(seen, 1.0f);
   if (countsShadowRays) rays.shadowRays = shadowRayRatio(seen, photon);
 }
 
@@ -194,7 +196,7 @@ void Caustics::trace(const Photon& photon, Rng& rng, Splats& out) const {
   Ray next{photon.start.origin, photon.start.direction};
   SurfacePoint hit;
   bool onlyPhotons = false;  // whether paths from the camera cannot find this light
-  RaysOfWay rays;
+  CompetingPath rays;
   for (unsigned specularBounces = 0; specularBounces <= kMaxSpecular && isFinite(flux);
        ++specularBounces) {
     accel_.closestHit(next.origin, next.direction, hit);
@@ -241,7 +243,7 @@ void Caustics::followBounces(const Bsdf& bsdf, Vec3 flux, const Photon& photon, 
 }
 
 void Caustics::connect(const SurfacePoint& vertex, Vec3 flux, const Photon& photon,
-                       const RaysOfWay& rays, Splats& out) const {
+                       const CompetingPath& rays, Splats& out) const {
   static const PixelFilter kPixel;
   // Pilots count photons, so each of theirs belongs to one pixel.
   const PixelFilter& filter = chosen_ ? filter_ : kPixel;

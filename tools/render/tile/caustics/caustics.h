@@ -11,9 +11,9 @@
 #include "tools/render/pixel_filter.h"
 #include "tools/render/sample.h"
 #include "tools/render/splat/splat.h"
-#include "transport/direct_light.h"
-#include "transport/emission_guide.h"
-#include "transport/spatial_light_sampler.h"
+#include "transport/direct_light/direct_light.h"
+#include "transport/direct_light/spatial_light_sampler.h"
+#include "transport/photons/emission_guide.h"
 
 namespace bnvpl {
 
@@ -52,16 +52,16 @@ class Caustics {
   // Parameters of MIS with rays that leave a point that is directly visible from `origin`, the
   // origin of the camera ray.
   PhotonMis photonMis(const SurfacePoint& point, Vec3 origin) const;
-  CausticStats stats() const { return {emitters_, emitters_ - dense_.size(), useful_}; }
+  CausticStats stats() const { return {emitters_, emitters_ - photonEmitters_.size(), useful_}; }
 
  private:
   static constexpr double kMinPilotPhotons = 4.0;
   static constexpr uint64_t kPhotonsPerPilotPhoton = 8;
-  static constexpr uint64_t kPhotonsPerLearningPhoton = 16;
+  static constexpr uint64_t kPhotonsPerLearningPhoton = 16, kMaxFirstLearningPhotons = 1 << 20;
   // Limits if few have reached the film.
   static constexpr uint64_t kPhotonsPerFurtherPhoton = 8, kMaxLearningPhotons = 1 << 18;
 
-  void learnEmission(uint64_t key, const ProgressFn& progress);
+  void learnGuide(uint64_t key, const ProgressFn& progress);
   void chooseEmitters(uint64_t key, const ProgressFn& progress);
   void add(const Splat& splat);
   PhotonMis sharedBy(float samplesPerArea) const;
@@ -78,26 +78,26 @@ class Caustics {
     bool hittable;  // whether rays can hit the light
     Vec3 lens;      // the point of the lens with which its vertices are connected
   };
-  // What MIS needs of rays that come the photon's way from its other end (PhotonMis). Its last
-  // vertex is their first.
-  struct RaysOfWay {
-    float later = 1.0f;       // probability of specular lobes at all vertices but the last
-    float last = 1.0f;        // that at the last, if it is the rays' first
-    float lastLater = 1.0f;   // that at the last, if others follow
+  // The path that rays from the camera may take along the vertices of this photon, with the
+  // probabilities that MIS needs (PhotonMis). The photon's last vertex is its first.
+  struct CompetingPath {
+    float specularBefore = 1.0f;       // probability of specular lobes at all vertices but the last
+    float specularAtLast = 1.0f;       // that at the last, where the path begins there
+    float specularAtLastLater = 1.0f;  // that at the last, where the path comes from another
     float shadowRays = 0.0f;  // ratio to BSDF rays at the photon's first vertex
-    float probability() const { return later * last; }
+    float probability() const { return specularBefore * specularAtLast; }
   };
   // Adds a specular vertex from which the photon goes on in the direction wi.
   void addVertex(const Bsdf& vertex, Vec3 wi, bool countsShadowRays, const Photon& photon,
-                 RaysOfWay& rays) const;
+                 CompetingPath& rays) const;
   float shadowRayRatio(const Bsdf& vertex, const Photon& photon) const;
   // Follows a photon through specular vertices.
   void trace(const Photon& photon, Rng& rng, Splats& out) const;
   // Follows the photon from a rough vertex, by its rough lobes.
   void followBounces(const Bsdf& bsdf, Vec3 flux, const Photon& photon, Rng& rng,
                      Splats& out) const;
-  void connect(const SurfacePoint& vertex, Vec3 flux, const Photon& photon, const RaysOfWay& rays,
-               Splats& out) const;
+  void connect(const SurfacePoint& vertex, Vec3 flux, const Photon& photon,
+               const CompetingPath& rays, Splats& out) const;
 
   const Accelerator& accel_;
   const LightSet& lights_;
@@ -106,7 +106,7 @@ class Caustics {
   CompetingRays rays_;
   unsigned bounces_;
   uint32_t width_;
-  std::vector<uint64_t> dense_;  // emitters with enough photons, ascending
+  std::vector<uint64_t> photonEmitters_;  // emitters with enough photons, ascending
   bool chosen_ = false;          // whether the pilot is done; until then all emitters send photons
   size_t emitters_ = 0;
   std::vector<PhotonLight> light_;

@@ -118,8 +118,10 @@ void PixelControlVariate::apply(const TileSamples& tile,
   std::vector<CovarianceSums> groups((tile.pixels + side - 1) / side);
   for (size_t i = 0; i < count; ++i) {
     predictions[i] = predicted(paths[i]);
-    groups[i % tile.pixels / side].add(double{mean(tile.samples[i].radiance.indirect)},
-                                       double{mean(predictions[i])});
+    const CameraSample& sample = tile.samples[i];
+    groups[i % tile.pixels / side].add(
+        double{mean(unweighted(sample.radiance.indirect, sample.weight))},
+        double{mean(unweighted(predictions[i], sample.weight))});
   }
   std::vector<Variate> variates(tile.pixels);
   for (uint32_t p = 0; p < tile.pixels; ++p) {
@@ -132,7 +134,8 @@ void PixelControlVariate::apply(const TileSamples& tile,
     Vec3 sum;
     const float each = 1.0f / static_cast<float>(pixels_.count(tile, pixel));
     const LightGroupSink byGroup = tile.samples[i].groups.indirect();
-    pixels_.forEach(tile, pixel, tile.firstSample + static_cast<uint32_t>(i / tile.pixels), {},
+    pixels_.forEach(tile, pixel, tile.firstSample + static_cast<uint32_t>(i / tile.pixels),
+                    {.wanted = false},
                     [&](const SpecularPath& path, const RadianceSample&, float weight) {
                       const Vec3 prediction = predicted(path);
                       const float factor = variate.factor(prediction, weight);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/parallel.h"
+#include "core/winsorized_mean.h"
 
 namespace bnvpl {
 
@@ -24,15 +25,14 @@ PixelRays::PixelRays(const Accelerator& accel, const LightSet& lights, const Pix
       width_(filmPoints.width),
       dimension_(dimension),
       raysEach_(values.size()) {
-  const double filmMean =
-      parallelSum(raysEach_.size(), [&](size_t i) { return double{values[i]}; }) /
-      static_cast<double>(raysEach_.size());
+  const double filmMean = winsorizedMean({values.begin(), values.end()});
   parallelFor(raysEach_.size(), 1024, [&](size_t i) {
     const size_t x = i % filmPoints.width, y = i / filmPoints.width;
     double sum = 0.0, squares = 0.0, count = 0.0;
     for (size_t v = y > 0 ? y - 1 : 0; v < std::min<size_t>(filmPoints.height, y + 2); ++v) {
       for (size_t u = x > 0 ? x - 1 : 0; u < std::min<size_t>(filmPoints.width, x + 2); ++u) {
         const double value = double{values[v * filmPoints.width + u]};
+        if (!std::isfinite(value)) continue;
         sum += value, squares += value * value, count += 1.0;
       }
     }

@@ -5,7 +5,7 @@
 
 #include "tools/render/camera_path.h"
 #include "tools/render/tile/allocation/parity_pattern.h"
-#include "transport/spatial_light_sampler.h"
+#include "transport/direct_light/spatial_light_sampler.h"
 #include "transport/walk.h"
 
 namespace bnvpl {
@@ -44,7 +44,7 @@ DirectSamples::Light DirectSamples::sample(uint32_t x, uint32_t y, const Rays& r
   RadianceSample seen;
   const SpecularPath path = traceCameraPath(accel_, lights_, x, y, at, rng, seen,
                                             {rays.lights.strata, spatialLights_}, onCameraPath);
-  Light light{seen.emission, seen.direct, {}, {}};
+  Light light{seen.emission, seen.direct, {}, {}, at.weight};
   if (layers) *layers = seen;
   if (!path.rough) return light;
   const Bsdf bsdf(accel_.scene(), path.hit);
@@ -106,7 +106,7 @@ float bsdfRaysFor(double squareByBsdf, double varianceByLight, double lightRays)
   if (!(varianceByLight > 0.0)) return 1.0f;
   const double rays =
       std::sqrt(lightRays * squareByBsdf / cost::kBsdfRay / (varianceByLight / cost::kLightRay));
-  return static_cast<float>(std::clamp(rays, kMinBsdfRays, 1.0));
+  return std::isfinite(rays) ? static_cast<float>(std::clamp(rays, kMinBsdfRays, 1.0)) : 1.0f;
 }
 
 }  // namespace
@@ -123,13 +123,15 @@ DirectSamples::Pilot DirectSamples::pilot(const TileLayout& tile,
         random64(tile.key, uint64_t{p} << 32 | tile.firstSample, kDimDirectPilots));
     const Light a = sample(tile.x + x, tile.y + y, rays, numbers, 0, {}),
                 b = sample(tile.x + x, tile.y + y, rays, numbers, 1, {});
-    out.variance += 0.5 * squared(a.all() - b.all());
-    varianceByLight += 0.5 * squared(a.byLight - b.byLight);
-    squareByBsdf += 0.5 * (squared(a.byBsdf) + squared(b.byBsdf));
-    out.light += 0.5f * (a.all() + b.all());
+    out.variance += 0.5 * squared(a.unweightedLight() - b.unweightedLight());
+    varianceByLight +=
+        0.5 * squared(unweighted(a.byLight, a.weight) - unweighted(b.byLight, b.weight));
+    squareByBsdf +=
+        0.5 * (squared(unweighted(a.byBsdf, a.weight)) + squared(unweighted(b.byBsdf, b.weight)));
+    out.light += 0.5f * (a.unweightedLight() + b.unweightedLight());
     pixels += 1.0;
   }
-  out.variance /= pixels;
+  out.variance *= double{filter_.squaredWeight()} / pixels;
   out.light *= static_cast<float>(1.0 / pixels);
   if (strata) out.bsdfRays = bsdfRaysFor(squareByBsdf, varianceByLight, kLightRays);
   return out;
@@ -143,14 +145,15 @@ struct Indirect {
   Vec3 light;
 };
 
-Indirect indirectOf(const TileSamples& tile) {
+Indirect indirectOf(const TileSamples& tile, const PixelFilter& filter) {
   const size_t perPixel = tile.samples.size() / tile.pixels;
   Indirect out;
   for (uint32_t p = 0; p < tile.pixels; ++p) {
     Vec3 sum;
     double squares = 0.0;
     for (size_t s = 0; s < perPixel; ++s) {
-      const Vec3 v = tile.samples[s * tile.pixels + p].radiance.indirect;
+      const CameraSample& sample = tile.samples[s * tile.pixels + p];
+      const Vec3 v = unweighted(sample.radiance.indirect, sample.weight);
       sum += v, squares += squared(v);
     }
     out.light += sum * (1.0f / static_cast<float>(tile.samples.size()));
@@ -158,19 +161,21 @@ Indirect indirectOf(const TileSamples& tile) {
       out.variance += (squares - squared(sum) / double(perPixel)) / double(perPixel - 1);
     } else {  // from the difference to the next pixel of the row
       const uint32_t x = p % tile.width, other = x + 1 < tile.width ? p + 1 : p - std::min(x, 1u);
-      out.variance += 0.5 * squared(sum - tile.samples[other].radiance.indirect);
+      const CameraSample& next = tile.samples[other];
+      out.variance += 0.5 * squared(sum - unweighted(next.radiance.indirect, next.weight));
     }
   }
-  out.variance = std::max(0.0, out.variance / tile.pixels);
+  out.variance = std::max(0.0, double{filter.squaredWeight()} * out.variance / tile.pixels);
   return out;
 }
 
 // Number of direct samples for each sample. Without a marginal cost of the film, that of the tile's
 // indirect light is used.
-unsigned countFor(const TileSamples& tile, const DirectSamples::Pilot& pilot, double costOfOne,
-                  double cost, const SampleAllocation& allocation) {
+unsigned countFor(const TileSamples& tile, const PixelFilter& filter,
+                  const DirectSamples::Pilot& pilot, double costOfOne, double cost,
+                  const SampleAllocation& allocation) {
   if (!(pilot.variance > 0.0)) return 1;
-  const Indirect indirect = indirectOf(tile);
+  const Indirect indirect = indirectOf(tile, filter);
   if (allocation.marginalCost > 0.0)
     return samplesFor(allocation.relative(pilot.variance, pilot.light + indirect.light), costOfOne,
                       allocation.marginalCost, 1, kMaxSamples);
@@ -206,7 +211,7 @@ void DirectSamples::add(const TileSamples& tile, uint32_t pixel, const Rays& ray
       const Light light = sample(x, y, rays, numbers, index++, turn, layers, onCameraPath, lit);
       ++turn.index;
       out.sums[s] += light;
-      moments.add(light.all());
+      moments.add(light.unweightedLight());
     }
   }
   out.count += count;
@@ -217,7 +222,8 @@ double DirectSamples::render(const TileSamples& tile, std::span<const SpecularPa
                              const SampleAllocation& allocation) const {
   const Rays rays{lightsOf(strata), pilot.bsdfRays};
   const double costOfOne = costOf(rays);
-  const unsigned count = count_ > 0 ? count_ : countFor(tile, pilot, costOfOne, cost, allocation);
+  const unsigned count =
+      count_ > 0 ? count_ : countFor(tile, filter_, pilot, costOfOne, cost, allocation);
   const size_t perPixel = tile.samples.size() / tile.pixels;
   const bool allocated = count_ == 0 && allocation.marginalCost > 0.0;
   std::vector<Pixel> pixels(tile.pixels);
@@ -227,9 +233,13 @@ double DirectSamples::render(const TileSamples& tile, std::span<const SpecularPa
     pixels[p].lit.resize(perPixel * tile.groups);
     for (size_t s = 0; s < perPixel; ++s) {
       const size_t i = s * tile.pixels + p;
-      pixels[p].sums[s] = {
-          paths[i].emissionFirst, paths[i].emissionFirst + paths[i].directLater, {}, {}};
-      moments[p].light += tile.samples[i].radiance.indirect * (1.0f / static_cast<float>(perPixel));
+      pixels[p].sums[s] = {paths[i].firstSegmentEmission,
+                           paths[i].firstSegmentEmission + paths[i].lightOverSpecular,
+                           {},
+                           {}};
+      const CameraSample& sample = tile.samples[i];
+      moments[p].light += unweighted(sample.radiance.indirect, sample.weight) *
+                          (1.0f / static_cast<float>(perPixel));
     }
     add(tile, p, rays, allocated ? (count + 1) / 2 : count, pixels[p], moments[p]);
     moments[p].light += moments[p].sum * static_cast<float>(1.0 / moments[p].count);
@@ -248,7 +258,8 @@ void DirectSamples::addMore(const TileSamples& tile, const Rays& rays, double co
                             const SampleAllocation& allocation,
                             std::span<const PixelMoments> moments, std::span<Pixel> pixels) const {
   PixelMoments unused;
-  const auto counts = samplesByParity(moments, tile, cost, allocation, 1, kMaxSamples);
+  const auto counts =
+      samplesByParity(moments, tile, filter_.squaredWeight(), cost, allocation, 1, kMaxSamples);
   for (uint32_t p = 0; p < tile.pixels; ++p) {
     const unsigned all = counts[parity(p % tile.width, p / tile.width)];
     if (all > pixels[p].count) add(tile, p, rays, all - pixels[p].count, pixels[p], unused);

@@ -7,7 +7,7 @@
 #include "tools/render/sample.h"
 #include "tools/render/tile/allocation/sample_allocation.h"
 #include "tools/render/tile/direct/visible_emission.h"
-#include "transport/direct_light.h"
+#include "transport/direct_light/direct_light.h"
 
 namespace bnvpl {
 
@@ -49,7 +49,9 @@ class DirectSamples {
     Vec3 onCameraPath;  // on the camera path: `emission`, and light at specular vertices
     // Light that the shading point scatters, by shadow rays and by BSDF rays.
     Vec3 byLight, byBsdf;
+    float weight = 1.0f;  // the pixel filter's, in all of the light; meaningless in a sum
     Vec3 all() const { return onCameraPath + byLight + byBsdf; }
+    Vec3 unweightedLight() const { return unweighted(all(), weight); }
     Light& operator+=(const Light& other);
   };
   // Rays from a shading point.

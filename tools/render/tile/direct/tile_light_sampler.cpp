@@ -30,7 +30,11 @@ TileLightSampler::TileLightSampler(const Accelerator& accel, const LightSet& lig
       tiles_(tilesX_ * tilesY_) {
   if (strata_.size() < 2) return;
   std::vector<StrataValues> some(std::min(tiles_.size(), kFilmTiles));
-  parallelFor(some.size(), 1, [&](size_t i) { some[i] = learn(i * tiles_.size() / some.size()); });
+  parallelFor(some.size(), 1, [&](size_t i) {
+    PooledStrata own(strata_.size());
+    own.add(estimate(i * tiles_.size() / some.size()));
+    some[i] = own.distribution();
+  });
   everywhere_ = meanOf(some, strata_.size());
 }
 

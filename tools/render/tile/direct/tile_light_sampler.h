@@ -8,7 +8,7 @@
 
 #include "core/cost_trial.h"
 #include "tools/render/gather/gather.h"
-#include "transport/strata_pilot.h"
+#include "transport/direct_light/strata_pilot.h"
 
 namespace bnvpl {
 

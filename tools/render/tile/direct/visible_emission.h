@@ -1,6 +1,5 @@
-// Directly visible emission: area lights and skies that the camera sees, also over mirrors, glass
-// and near-specular lobes. Its edges are sharp and bright. Camera rays are cheap, so pixels at such
-// edges get more of them.
+// Emitters that camera rays hit, at once or over mirrors, glass and near-specular lobes. Their
+// edges are sharp and bright. Camera rays are cheap, so pixels at such edges get more of them.
 #pragma once
 
 #include "tools/render/tile/control/pixel_rays.h"
@@ -12,7 +11,7 @@ class VisibleEmission {
   // Borrows accel and lights.
   VisibleEmission(const Accelerator& accel, const LightSet& lights, const PixelFilter& filter,
                   const FilmPoints& filmPoints)
-      : pixels_(accel, lights, filter, filmPoints, filmPoints.emission, 0.0, kDimEmissionRays) {}
+      : pixels_(accel, lights, filter, filmPoints, filmPoints.direct, 0.0, kDimEmissionRays) {}
 
   // `sum`: direct light and emission of `count` camera rays of a sample. Replaces both by the mean
   // over these and the pixel's further rays. The number of further rays depends on the film's

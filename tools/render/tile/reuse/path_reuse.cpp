@@ -41,7 +41,7 @@ struct Connections {
   Connections(std::span<const ReusingSample> group, uint32_t lightGroups) : samples(group.size()) {
     for (size_t i = 0; i < samples; ++i) {
       for (const ReusedVertex& vertex : group[i].vertices) {
-        if (isBlack(vertex.radiance)) continue;
+        if (isBlack(vertex.radiance) || !isFinite(vertex.radiance)) continue;
         vertices.push_back(&vertex);
         foundBy.push_back(i);
         byGroup.push_back(group[i].vertexGroups +

@@ -1,6 +1,6 @@
 // Path reuse (Bekaert, Sbert & Halton 2002): the vertices of one sample's near-field rays also
 // light the other samples of its group, as virtual lights that exist only for the group. A vertex
-// can be reused if its radiance in one direction gives that in all directions (RoughLeaving:
+// can be reused if its radiance in one direction gives that in all directions (ExitantFactor:
 // diffuse, bare or below a near-specular coat). Estimating that radiance takes many rays,
 // connecting one more sample to the vertex only one.
 //
@@ -26,15 +26,15 @@
 #include <vector>
 
 #include "tools/render/compensate/compensate.h"
-#include "tools/render/tile/directions.h"
-#include "transport/accelerator.h"
+#include "tools/render/tile/reuse/directions.h"
+#include "transport/accelerator/accelerator.h"
 
 namespace bnvpl {
 
 // A vertex on a surface that is diffuse, apart from a near-specular coat.
 struct ReusedVertex {
   Vec3 position, normal;  // unit, on the side of the sample that found it
-  RoughLeaving leaving;
+  ExitantFactor leaving;
   Vec3 radiance;  // radiance that leaves the vertex, over the factor of `leaving`, W/(m2 sr)
   UncoveredShare uncovered;
 };

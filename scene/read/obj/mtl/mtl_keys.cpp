@@ -1,0 +1,38 @@
+#include "scene/read/obj/mtl/mtl_keys.h"
+
+#include <algorithm>
+#include <array>
+
+#include "scene/read/obj/obj_text.h"
+
+namespace bnvpl {
+
+bool MtlKeys::metallicRoughness() const {
+  constexpr std::array<std::string_view, 9> kKeys{"Pr",    "Pm",     "Ps",     "Pc",    "Pcr",
+                                                  "aniso", "anisor", "map_Pr", "map_Pm"};
+  return blender || std::any_of(kKeys.begin(), kKeys.end(), [&](auto key) { return has(key); });
+}
+
+std::map<std::string, MtlKeys> mtlKeys(std::string_view library) {
+  std::map<std::string, MtlKeys> out;
+  MtlKeys unnamed;
+  MtlKeys* keys = &unnamed;
+  const bool blender = library.starts_with("# Blender ");
+  while (!library.empty()) {
+    const size_t end = std::min(library.find('\n'), library.size());
+    const std::string_view line = trimmed(library.substr(0, end));
+    library.remove_prefix(std::min(end + 1, library.size()));
+    const size_t blank = std::min(line.find_first_of(" \t\r"), line.size());
+    const std::string_view key = line.substr(0, blank);
+    if (key == "newmtl") {
+      const auto [it, isNew] = out.try_emplace(firstLine(std::string(trimmed(line.substr(blank)))));
+      keys = isNew ? &it->second : &unnamed;
+      keys->blender = blender;
+    } else if (!key.empty() && key[0] != '#') {
+      keys->keys.emplace(key);
+    }
+  }
+  return out;
+}
+
+}  // namespace bnvpl
