@@ -25,7 +25,7 @@ constexpr const char* kPartial = ".partial-";
 // Paths for removePartialFiles(), in fixed slots because a signal handler can neither lock nor
 // allocate. A run has at most five files open; the next run would remove a file without a slot.
 std::array<std::atomic<const char*>, 16> partialFiles;
-std::atomic<bool> outputReplaced{false}, removing{false};
+std::atomic<bool> outputReplaced{false};
 static_assert(std::atomic<const char*>::is_always_lock_free);
 
 void remember(const char* path) {
@@ -39,7 +39,6 @@ void forget(const char* path) {
     const char* same = path;
     if (place.compare_exchange_strong(same, nullptr)) return;
   }
-  while (removing) ::pause();  // another thread reads `path` and ends the process
 }
 
 // Whether `name` is `prefix` followed by digits, a dash and digits.
@@ -228,7 +227,6 @@ bool isPartialOf(const fs::path& file, const fs::path& target) {
 }
 
 void removePartialFiles() noexcept {
-  removing = true;
   for (auto& place : partialFiles) {
     if (const char* path = place.exchange(nullptr)) ::unlink(path);
   }

@@ -65,7 +65,8 @@ class OutputSet {
 // Whether `file` has the name of a partial file of `target`, and so would be removed as abandoned.
 bool isPartialOf(const fs::path& file, const fs::path& target);
 
-// For a process that is about to end; both may be called from a signal handler.
+// For a process that is about to end. Both may be called from a signal handler that runs on the
+// thread which writes the files.
 void removePartialFiles() noexcept;
 bool anyOutputReplaced() noexcept;  // whether this process has replaced an output, or is about to
 

@@ -78,7 +78,6 @@ fs::path withoutSlash(const fs::path& path) {
 // The newest path of the partial folder, of which a tool has only one. The list is lock-free,
 // because a signal handler can neither lock nor allocate.
 std::atomic<const OutputFolder::Path*> partialPaths{nullptr};
-std::atomic<bool> foldersBeingRemoved{false};
 static_assert(std::atomic<const OutputFolder::Path*>::is_always_lock_free);
 
 }  // namespace
@@ -145,8 +144,6 @@ void OutputFolder::remember(const fs::path& path) {
 
 void OutputFolder::forget() {
   partialPaths = nullptr;
-  while (foldersBeingRemoved && !paths_.empty())
-    ::pause();  // a handler reads them, and is about to end all
   paths_.clear();
 }
 
@@ -193,7 +190,6 @@ void OutputFolder::commit() {
 }
 
 void removePartialFolder() noexcept {
-  foldersBeingRemoved = true;
   for (const auto* p = partialPaths.exchange(nullptr); p; p = p->older) {
     if (::unlink(p->name.c_str()) != 0) ::rmdir(p->name.c_str());
   }

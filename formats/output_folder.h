@@ -49,8 +49,8 @@ class OutputFolder {
   int lock_ = -1;
 };
 
-// Removes the partial folder of a process that is about to end. May be called from a signal
-// handler.
+// Removes the partial folder of a process that is about to end. May be called from a signal handler
+// that runs on the thread which writes the folder.
 void removePartialFolder() noexcept;
 
 }  // namespace bnvpl

@@ -2,10 +2,14 @@
 #include "tools/common/process/interrupt.h"
 
 #include <gtest/gtest.h>
+#include <pthread.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
+#include <thread>
 
 #include "formats/atomic_file.h"
 
@@ -24,6 +28,34 @@ TEST(Interrupt, EndsTheToolAtOnceBySignal) {
     EXPECT_EXIT(run(), KilledBySignal(signal),
                 "^tool: interrupted \\(SIG[A-Z]+\\); no output was touched\n$");
   }
+}
+
+// Had the handler run on the thread that gets the signal, it would have ended before the file that
+// the main thread makes at that time, and the file would stay.
+TEST(Interrupt, EndsOnTheMainThreadWhicheverThreadGetsTheSignal) {
+  const fs::path folder =
+      fs::temp_directory_path() / ("bnvpl-main-thread-" + std::to_string(getpid()));
+  fs::create_directories(folder);
+  const auto run = [&] {
+    catchInterrupts("tool");
+    std::atomic<bool> blocked{false};
+    std::thread other([&] {
+      while (!blocked) std::this_thread::yield();
+      std::raise(SIGTERM);
+    });
+    sigset_t terminate;
+    sigemptyset(&terminate);
+    sigaddset(&terminate, SIGTERM);
+    ::pthread_sigmask(SIG_BLOCK, &terminate, nullptr);
+    blocked = true;
+    other.join();
+    const AtomicFile made(folder / "made");
+    std::fputs("made; ", stderr);
+    ::pthread_sigmask(SIG_UNBLOCK, &terminate, nullptr);
+  };
+  EXPECT_EXIT(run(), KilledBySignal(SIGTERM), "^made; tool: interrupted");
+  EXPECT_TRUE(fs::is_empty(folder));
+  fs::remove_all(folder);
 }
 
 TEST(Interrupt, RemovesPartialFilesAndTellsWhatWasReplaced) {

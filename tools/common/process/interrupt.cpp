@@ -1,5 +1,6 @@
 #include "tools/common/process/interrupt.h"
 
+#include <pthread.h>
 #include <unistd.h>
 
 #include <array>
@@ -25,7 +26,8 @@ struct Stop {
 constexpr std::array<Stop, 4> kStops{
     {{SIGINT, "SIGINT"}, {SIGTERM, "SIGTERM"}, {SIGHUP, "SIGHUP"}, {SIGXCPU, "SIGXCPU"}}};
 
-std::array<char, 64> toolName{};  // set before any handler runs
+std::array<char, 64> toolName{};  // set before any handler runs, as is mainThread
+pthread_t mainThread;
 std::atomic<bool> deferring{false}, ending{false};
 std::atomic<int> pending{0};
 std::array<std::atomic<int64_t>, kStops.size()> firstNs{};  // first arrival of each signal; 0: none
@@ -70,7 +72,13 @@ bool isAnotherRequest(int signal) {
   return false;
 }
 
+// The main thread makes and renames all files. Where a handler ran on another one, a file could
+// appear after the handler has removed them.
 extern "C" void onStop(int signal) {
+  if (!::pthread_equal(::pthread_self(), mainThread)) {
+    ::pthread_kill(mainThread, signal);
+    return;
+  }
   const int saved = errno;
   int none = 0;
   const bool another = isAnotherRequest(signal);
@@ -81,6 +89,7 @@ extern "C" void onStop(int signal) {
 }  // namespace
 
 void catchInterrupts(const std::string& tool) {
+  mainThread = ::pthread_self();
   std::strncpy(toolName.data(), tool.c_str(), toolName.size() - 1);
   std::signal(SIGXFSZ, SIG_IGN);
   struct sigaction action {};

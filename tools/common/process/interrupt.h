@@ -23,7 +23,8 @@
 
 namespace bnvpl {
 
-// Installs the handlers. Called once, by runTool, before any other thread exists.
+// Installs the handlers. Called once, by runTool, before any other thread exists. The calling
+// thread is the one that ends the tool, whichever thread gets a signal.
 void catchInterrupts(const std::string& tool);
 
 // While an instance exists, a signal only makes interrupted() true; the same signal a second or
