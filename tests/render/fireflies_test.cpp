@@ -86,6 +86,26 @@ TEST(Fireflies, AreHiddenAndKeepTheirEnergy) {
   }
 }
 
+// A pixel filter with negative lobes may give a bright sample a negative weight. Its pixel would be
+// a black dot.
+TEST(Fireflies, MayBeNegative) {
+  for (const uint64_t passes : {0u, 6u}) {
+    const Shown film{.passes = passes};
+    const Image kept = film(firefly(Vec3(-300, -100, -50)), 16, false),
+                spread = film(firefly(Vec3(-300, -100, -50)), 16, true);
+    for (const char* channel : {"R", "G", "B", "indirect.R", "indirect.G", "indirect.B"}) {
+      EXPECT_LT((*kept.find(channel))[index(film)], 0.0f) << channel;
+      EXPECT_NEAR(sumOf(spread, channel) / sumOf(kept, channel), 1.0, 1e-5) << channel;
+      const float others = channel[1] == 0 ? 1.0f : 0.5f;
+      for (const float v : *spread.find(channel)) {
+        // The sample lacks its share of 0.5, and takes what AreHiddenAndKeepTheirEnergy allows.
+        ASSERT_GE(v, others - 0.5f / 16.0f - 2.0f * 0.125f - 0.05f) << channel << ' ' << passes;
+        ASSERT_LE(v, others + 1e-3f);
+      }
+    }
+  }
+}
+
 // Except for the pixel itself, none becomes brighter by more than the visible contrast.
 TEST(Fireflies, AreSpreadAsWidelyAsTheyAreBright) {
   const Shown film;

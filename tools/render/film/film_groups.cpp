@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/parallel.h"
+#include "tools/render/film/layers.h"
 
 namespace bnvpl {
 
@@ -30,10 +31,10 @@ void FilmGroups::keepBrightest(size_t pixel, size_t kind, Vec3 light, const Vec3
   const size_t row = 1 + count;
   Vec3* first = &brightest[pixel * brightestPerPixel() + 2 * kind * row];
   Vec3* second = first + row;
-  const float own = mean(light * share);
-  if (!(own > mean(*second))) return;
-  if (own > mean(*first)) std::copy_n(first, row, second);
-  Vec3* to = own > mean(*first) ? first : second;
+  const float own = PixelSums::magnitude(light * share), largest = PixelSums::magnitude(*first);
+  if (!(own > PixelSums::magnitude(*second))) return;
+  if (own > largest) std::copy_n(first, row, second);
+  Vec3* to = own > largest ? first : second;
   *to++ = light * share;
   for (uint32_t g = 0; g < count; ++g) *to++ = groups[g] * share;
 }

@@ -36,7 +36,7 @@ FilmValues shownLight(const FilmSums& film, Only only) {
     double sum = 0.0;
     for (size_t c = 0; c < 3; ++c) sum += shownRadiance(film.sums[i], only, c) / 3.0;
     shown[i] = static_cast<float>(sum * film.perSample);
-    if (!std::isfinite(shown[i]) || shown[i] < 0.0f) shown[i] = 0.0f;
+    if (!std::isfinite(shown[i])) shown[i] = 0.0f;
   });
   return shown;
 }
@@ -98,14 +98,15 @@ std::vector<BothLights> excessOf(const FilmSums& film, Only only, const FilmValu
                          double{std::max({0.0f, others, around})};
     forBrightest(film, i, only, [&](size_t kind, Vec3 light, size_t rank) {
       const size_t shownKind = std::min<size_t>(kind, 1);
-      const double bound = kTimes[shownKind] * share, own{mean(light)};
+      const double bound = kTimes[shownKind] * share, own{PixelSums::magnitude(light)};
       if (!(own > bound)) return;
       const auto part = static_cast<float>(1.0 - bound / own);
       excess[i][shownKind] += light * part;
       if (!byGroup.empty()) addExcess(film, i, kind, rank, part, light, byGroup);
     });
     // A bright pixel in dark surroundings keeps its light.
-    if (!(around > 1e-5f * shown[i]) || !isFinite(excess[i][0]) || !isFinite(excess[i][1])) {
+    if (!(around > 1e-5f * std::fabs(shown[i])) || !isFinite(excess[i][0]) ||
+        !isFinite(excess[i][1])) {
       excess[i] = {};
       if (!byGroup.empty())
         std::fill_n(&byGroup[i * film.groups->count], film.groups->count, Vec3{});
@@ -122,9 +123,11 @@ FilmValues meansOf(std::span<const BothLights> lights, size_t kind) {
 
 // Excess of each pixel for the test of visibility. One near-field ray may cause the fireflies of
 // many pixels of a tile, so indirect light counts with the geometric mean of the pixel's excess and
-// the tile's.
+// the tile's. Lumps have no sign.
 FilmValues lumpsOf(std::span<const BothLights> excess, size_t width) {
-  const FilmValues direct = meansOf(excess, 0), indirect = meansOf(excess, 1);
+  const FilmValues direct = meansOf(excess, 0);
+  FilmValues indirect = meansOf(excess, 1);
+  for (float& e : indirect) e = std::fabs(e);
   const size_t across = (width + kTileSide - 1) / kTileSide;
   const auto tileOf = [&](size_t i) {
     return i / width / kTileSide * across + i % width / kTileSide;
@@ -148,7 +151,7 @@ FilmValues surfaceLight(const SurfaceFilter& filter, const FilmValues& ones,
     added = filter.smooth(added, level);
   }
   for (size_t i = 0; i < light.size(); ++i)
-    if (wide[i] > 0.0f) light[i] *= 1.0f + added[i] / wide[i];
+    if (wide[i] > 0.0f) light[i] *= std::max(0.0f, 1.0f + added[i] / wide[i]);
   return light;
 }
 
@@ -171,10 +174,11 @@ std::vector<Target> chooseTargets(const SurfaceFilter& filter, const FilmValues&
     const auto peak = static_cast<float>(SurfaceFilter::peak(level));
     parallelFor(targets.size(), 1024, [&](size_t i) {
       Target& target = targets[i];
-      if (!(excess[i] > 0.0f) || target.contrast <= kVisible || !(lit[i] > kDark * excess[i]))
+      if (excess[i] == 0.0f || target.contrast <= kVisible ||
+          !(lit[i] > kDark * std::fabs(excess[i])))
         return;
       const float contrast = peak * lumps[i] / (lit[i] + added[i]);
-      if (contrast < target.contrast)
+      if (contrast >= 0.0f && contrast < target.contrast)
         target = {static_cast<uint8_t>(level), 1.0f / lit[i], contrast};
     });
   }
@@ -229,7 +233,7 @@ std::vector<BothLights> redistributeFireflies(const FilmSums& film, Only only, u
   const FilmValues indirect = meansOf(excess, 1);
   for (size_t i = 0; i < both.size(); ++i) both[i] += indirect[i];
   std::vector<BothLights> change(excess.size());
-  if (std::ranges::none_of(both, [](float e) { return e > 0.0f; })) return change;
+  if (std::ranges::none_of(both, [](float e) { return e != 0.0f; })) return change;
   const FilmValues light = surfaceLight(within, ones, shown, both);
   const FilmValues lumps = lumpsOf(excess, width);
   std::vector<Target> withinEdges = chooseTargets(within, light, both, lumps);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -37,16 +38,19 @@ struct PixelSums {
 
   std::array<double, 29> sum{};
   // Brightest samples of direct light without emission, and of indirect light without photons and
-  // light that a film filter smooths, in descending order of the channels' mean.
+  // light that a film filter smooths, in descending order of magnitude(). A sample is negative
+  // where the pixel filter is, or where a control variate predicts more light than there is.
   std::array<std::array<Vec3, kBrightest>, 2> brightest{};
 
+  // By which a sample is found to be a firefly: the size of its mean over the channels.
+  static float magnitude(Vec3 light) { return std::fabs(mean(light)); }
   Vec3 photon(size_t k) const {
     const double* of = &sum[kPhotons + 3 * k];
     return {float(of[0]), float(of[1]), float(of[2])};
   }
   void keepBrightest(size_t kind, Vec3 contribution) {
     for (Vec3& kept : brightest[kind]) {
-      if (mean(contribution) > mean(kept)) std::swap(contribution, kept);
+      if (magnitude(contribution) > magnitude(kept)) std::swap(contribution, kept);
     }
   }
 };
