@@ -127,6 +127,9 @@ struct LightSpec {
   float rotateRad = 0.0f;         // environment: rotation about +y
   float scale = 1.0f;             // environment: factor on the radiance
   uint32_t group = 0;             // into Scene::lightGroups
+
+  // Whether it shines from one point of the scene.
+  bool pointOrSpot() const { return type == LightType::Point || type == LightType::Spot; }
 };
 
 // A mesh by its name in the files. Its counts include triangles that are left out later.

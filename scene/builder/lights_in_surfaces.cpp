@@ -27,8 +27,7 @@ class Lights {
   explicit Lights(const Scene& scene) : distance_(scene.offsetSize() * 0x1p-18f) {
     for (size_t i = 0; i < scene.lights.size(); ++i) {
       const LightSpec& light = scene.lights[i];
-      if (light.type == LightType::Point || light.type == LightType::Spot)
-        sorted_.push_back({light.position, i});
+      if (light.pointOrSpot()) sorted_.push_back({light.position, i});
     }
     std::ranges::sort(sorted_, {}, [](const Light& light) { return light.position.x; });
     for (const Light& light : sorted_) box_.extend(light.position);

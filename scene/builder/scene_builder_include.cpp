@@ -125,7 +125,7 @@ void SceneBuilder::placeCamera(const Affine& place, Camera& camera, FilePoint& p
 void SceneBuilder::placeLight(const Affine& place, LightSpec& light, FilePoint& position) {
   position = place.point(position);
   light.direction = turned(place, light.direction, light.direction);
-  if (light.type == LightType::Point || light.type == LightType::Spot) {
+  if (light.pointOrSpot()) {
     const double size = std::cbrt(std::fabs(place.determinant()));
     light.emission *= static_cast<float>(size * size);
     if (!isFinite(light.emission))

@@ -165,7 +165,7 @@ void SceneBuilder::roundPositions() {
   points_ = {};
   for (size_t i = 0; i < scene_.lights.size(); ++i) {
     LightSpec& light = scene_.lights[i];
-    if (light.type == LightType::Point || light.type == LightType::Spot) {
+    if (light.pointOrSpot()) {
       requirePlace(lightPositions_[i], "a light");
       light.position = fromOrigin(lightPositions_[i], scene_.origin);
     }

@@ -126,7 +126,7 @@ bool LightSet::sampleDirect(size_t index, Vec3 at, float u, float v, LightSample
   const Light& light = lights_[index];
   if (light.area) return sampleArea(light, at, u, v, out);
   const LightSpec& s = light.spec;
-  if (s.type == LightType::Point || s.type == LightType::Spot) {
+  if (s.pointOrSpot()) {
     const Vec3 d = s.position - at;
     const float d2 = lengthSquared(d);
     if (!(d2 > 0.0f)) return false;
@@ -192,9 +192,8 @@ LightSet::Extent LightSet::extent(size_t index) const {
       for (size_t c = 0; c < 3; ++c) bounds.extend(scene_.corner(t, c));
     return {true, true, bounds.center(), light.triangles.size()};
   }
-  const LightType type = light.spec.type;
-  return {type == LightType::Environment, type == LightType::Point || type == LightType::Spot,
-          light.spec.position, 1};
+  return {light.spec.type == LightType::Environment, light.spec.pointOrSpot(), light.spec.position,
+          1};
 }
 
 // Photons from infinity start on the faces of the scene's box that face the light, uniformly in
@@ -225,8 +224,7 @@ PhotonStart LightSet::emitFromInfinity(const Light& light, const PrimarySample& 
 
 bool LightSet::photonsReach(size_t index, Vec3 towards, Vec3 from) const {
   const Light& light = lights_[index];
-  const bool finite =
-      light.area || light.spec.type == LightType::Point || light.spec.type == LightType::Spot;
+  const bool finite = light.area || light.spec.pointOrSpot();
   return finite || scene_.bounds.isHitBy(from, towards);
 }
 
@@ -294,8 +292,7 @@ float LightSet::photonDensity(size_t index, Vec3 towards) const {
 
 PrimarySample LightSet::primarySample(size_t index, Rng& rng) const {
   const Light& light = lights_[index];
-  const bool fromPoint =
-      !light.area && (light.spec.type == LightType::Point || light.spec.type == LightType::Spot);
+  const bool fromPoint = !light.area && light.spec.pointOrSpot();
   PrimarySample at{};
   for (float& u : std::span(at).first(fromPoint ? 2 : 4)) u = rng.next();
   return at;

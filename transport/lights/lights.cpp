@@ -40,8 +40,7 @@ void LightSet::requireSquares() const {
   for (size_t i = 0; i < lights_.size(); ++i) {
     const Light& l = lights_[i];
     // A spot counts as a point light of its intensity, because its power is only that in the cone.
-    const bool local =
-        !l.area && (l.spec.type == LightType::Point || l.spec.type == LightType::Spot);
+    const bool local = !l.area && l.spec.pointOrSpot();
     const float sent = local ? maxComponent(l.spec.emission) * (4.0f * kPi) : maxComponent(l.power);
     if (!(sent / across / across > kMaxEmission)) continue;
     throw InputError(scene_.name() + ": the " + name(i) + " sends out " + shortestText(sent) +

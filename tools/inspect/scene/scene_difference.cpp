@@ -62,7 +62,7 @@ bool Comparison::sameViews() const {
 }
 
 bool Comparison::sameLight(const LightSpec& l, const LightSpec& m) const {
-  const bool placed = l.type == LightType::Point || l.type == LightType::Spot;
+  const bool placed = l.pointOrSpot();
   const bool directed = l.type == LightType::Spot || l.type == LightType::Directional;
   if (l.type != m.type || l.image != m.image) return false;
   if (a_.lightGroups[l.group] != b_.lightGroups[m.group]) return false;
