@@ -18,6 +18,15 @@ class InputError : public std::runtime_error {
   InputError(const fs::path& file, const std::string& problem)
       : std::runtime_error(file.string() + ": " + problem) {}
 };
+// Returns work(). What it finds wrong is wrong with `file`, which its messages then name.
+template <typename Work>
+auto withFile(const fs::path& file, const Work& work) {
+  try {
+    return work();
+  } catch (const InputError& e) {
+    throw InputError(file, e.what());
+  }
+}
 class FileError : public InputError {  // a damaged binary file, with the byte offset
  public:
   FileError(const fs::path& file, uint64_t byte, const std::string& problem)

@@ -79,8 +79,10 @@ TEST_F(Damage, VplsOfAnotherSceneAreRefused) {
 
 TEST_F(Damage, MoreVplsThanCandidates) {
   makeStages(scene_);
-  fail("vpl-eliminate", path("candidates.vpl") + " -o " + path("x") + " -n 301", kExitInput,
-       {"301", "300", "vpl-place"});
+  for (const char* way : {" -n 301", " -n 301 --estimate"}) {
+    fail("vpl-eliminate", path("candidates.vpl") + " -o " + path("x") + way, kExitInput,
+         {"candidates.vpl: ", "301", "300", "vpl-place"});
+  }
   EXPECT_FALSE(fs::exists(at("x")));
   succeed("vpl-eliminate", path("candidates.vpl") + " -o " + path("x") + " -n 300");
 }

@@ -43,13 +43,17 @@ const EliminateMethod& eliminateMethod(const Values& options) {
   return methodNamed(eliminateMethods(), options[kMethodSlot]);
 }
 
+void requireSceneAsNeeded(const EliminateMethod& method, bool given) {
+  if (method.needsScene == given) return;
+  throw UsageError(
+      "--method " + std::string(method.name) +
+      (given ? " takes no scene; leave --scene out" : " needs the scene; add --scene SCENE"));
+}
+
 VplTable eliminate(const VplTable& candidates, const Values& options, const Accelerator* accel,
                    const LightSet* lights, const ProgressFn& progress) {
   const EliminateMethod& method = eliminateMethod(options);
-  if (method.needsScene && !(accel && lights)) {
-    throw UsageError("--method " + std::string(method.name) +
-                     " needs the scene; add --scene SCENE");
-  }
+  requireSceneAsNeeded(method, accel && lights);
   requireEnough(candidates.size(), options[kEliminateCountOption]);
   const EliminateResult kept = method.run({candidates, accel, lights, progress}, options);
   VplTable table = keepRows(candidates, kept.rows);

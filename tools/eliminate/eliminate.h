@@ -45,14 +45,17 @@ struct EliminateMethod {
 // Defined in the build folder by cmake/Methods.cmake, from the folders beside this file.
 std::span<const EliminateMethod* const> eliminateMethods();
 
+// Throws UsageError unless a scene is given exactly where the method needs one.
+void requireSceneAsNeeded(const EliminateMethod& method, bool given);
+
 // Options of the stage: count, method, and those of each method.
 const StageSpec& eliminateSpec();
 const EliminateMethod& eliminateMethod(const Values& options);
 
 // Keeps rows of `candidates`, whose stage is the one that the method takes; normals have unit
 // length. A pure function: the number of threads does not change a byte. Throws InputError if count
-// is above the number of candidates, and UsageError if the method needs a scene and there is none.
-// The stage of the result is Eliminated, or Lit if the method takes lit rows.
+// is above the number of candidates, and UsageError unless there is a scene exactly where the
+// method needs one. The stage of the result is Eliminated, or Lit if the method takes lit rows.
 VplTable eliminate(const VplTable& candidates, const Values& options,
                    const Accelerator* accel = nullptr, const LightSet* lights = nullptr,
                    const ProgressFn& progress = {});

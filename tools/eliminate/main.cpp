@@ -25,13 +25,6 @@ struct World {
   LightSet lights;
 };
 
-void requireSceneAsNeeded(const EliminateMethod& method, bool given) {
-  if (method.needsScene == given) return;
-  throw UsageError(
-      "--method " + std::string(method.name) +
-      (given ? " takes no scene; leave --scene out" : " needs the scene; add --scene SCENE"));
-}
-
 int runEliminate(const StageRequest& request, const fs::path& input, const ToolOptions& tool) {
   StageRun run("vpl-eliminate", request, tool);
   const Values options = resolve(eliminateSpec(), request.given);
@@ -50,20 +43,21 @@ int runEliminate(const StageRequest& request, const fs::path& input, const ToolO
   const LightSet* lights = world ? &world->lights : nullptr;
   if (run.predictsCost()) {
     return run.predictCost("candidates,", [&](const ProgressFn& progress) {
-      return costOfEliminating(candidates, options, accel, lights, progress);
+      return withFile(
+          input, [&] { return costOfEliminating(candidates, options, accel, lights, progress); });
     });
   }
   std::vector<fs::path> read = world ? world->scene.files : std::vector<fs::path>{};
   run.filesReady(read);
   read.insert(read.begin(), input);
-
   Json inputs{{"candidates", hashText(candidates.checksum)}};
   if (world) inputs["scene"] = hashText(world->scene.contentHash);
   Json record =
       stageRecord("vpl-eliminate", recordOf(eliminateSpec(), options), inputs, tool.processor);
   if (world) record["view"] = viewRecord(world->scene);
   const auto whole = [&](const StageTask& task) {
-    VplTable kept = eliminate(candidates, options, accel, lights, task.progress);
+    VplTable kept = withFile(
+        input, [&] { return eliminate(candidates, options, accel, lights, task.progress); });
     kept.provenance = extendProvenance(candidates.provenance, record);
     writeVpl(task.files.add(request.output), kept);
     reportEliminated(kept, candidates.size(), task.summary);
