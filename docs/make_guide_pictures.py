@@ -18,6 +18,8 @@ from typing import Any
 import numpy.typing as npt
 
 ROOT = Path(__file__).resolve().parents[1]
+LABEL = 14  # pixels
+LABEL_ROWS = 3 * LABEL  # at the bottom of a picture
 MAX_DIFFERENCE = 0.5  # mean over a picture, steps of 255, for --check
 
 
@@ -28,6 +30,7 @@ class Case:
     scene: str
     size: str
     exposure: float
+    labels: tuple[str, str]
     left: tuple[str, str, str, str]
     right: tuple[str, str, str, str]
     crop: tuple[int, ...] = ()  # x, y, width, height
@@ -39,6 +42,7 @@ CASES = {
         "scenes/u-shape/scene.toml",
         "320x240",
         6,
+        ("1,500 VPLs, 30k photons", "3,000 VPLs, 4M photons"),
         ("-n 15k", "-n 1500", "--photons 30k", "--spp 8"),
         ("-n 60k", "-n 3k", "--photons 4M", "--spp 8"),
         (100, 120, 220, 120),
@@ -48,6 +52,7 @@ CASES = {
         "scenes/veach-door/scene.toml",
         "640x360",
         1.5,
+        ("500 VPLs, lightcuts, 10 %", "12,000 VPLs, tilecuts"),
         (
             "-n 20k",
             "-n 500",
@@ -61,6 +66,7 @@ CASES = {
         "scenes/cornell/scene.toml",
         "240x240",
         1.5,
+        ("without compensation", "near-field rays"),
         ("-n 12k", "-n 300", "--photons 2M", "--compensate none --spp 32 --only indirect"),
         ("-n 12k", "-n 300", "--photons 2M", "--spp 32 --only indirect"),
         (40, 125, 150, 100),
@@ -70,6 +76,7 @@ CASES = {
         "scenes/u-shape/scene.toml",
         "480x360",
         3,
+        ("photons shared out evenly", "guarded photons"),
         (
             "-n 60k",
             "-n 3k",
@@ -82,6 +89,7 @@ CASES = {
         "scenes/veach-door/table.toml",
         "320x180",
         2.5,
+        ("fireflies kept", "redistributed"),
         ("-n 60k", "-n 3k", "--photons 2M", "--spp 8 --fireflies keep"),
         ("-n 60k", "-n 3k", "--photons 2M", "--spp 8"),
         (100, 70, 140, 90),
@@ -91,6 +99,7 @@ CASES = {
         "scenes/gltf-room/room.glb",
         "320x180",
         1.2,
+        ("fireflies kept", "redistributed"),
         ("-n 120k --camera Room", "-n 3k", "", "--camera Room --fireflies keep"),
         ("-n 120k --camera Room", "-n 3k", "", "--camera Room"),
         (0, 40, 140, 90),
@@ -100,6 +109,7 @@ CASES = {
         "scenes/cornell/scene.toml",
         "480x480",
         0,
+        ("1 sample a pixel", "64 samples"),
         (
             "-n 12k",
             "-n 300",
@@ -171,6 +181,18 @@ def shown(file: Path, kind: Any) -> npt.NDArray[Any]:
     return result
 
 
+def labelled(pixels: npt.NDArray[Any], text: str) -> npt.NDArray[Any]:
+    import numpy
+    from PIL import Image
+
+    sys.path.append(str(ROOT / "eval"))
+    from picture_label import label
+
+    image = Image.fromarray(pixels)
+    label(image, 0, image.height, text, LABEL)
+    return numpy.asarray(image)
+
+
 def write(name: str, panels: Sequence[npt.NDArray[Any]]) -> None:
     import numpy
     import OpenImageIO
@@ -202,11 +224,14 @@ def panel(case: Case, side: str, tools: Path, folder: Path) -> npt.NDArray[Any]:
 
 
 def difference(name: str, tools: Path, folder: Path) -> float:
-    """The mean difference, in 8-bit steps, of a picture's right side and what the tools make."""
+    """The mean difference, in 8-bit steps, of a picture's right side and what the tools make.
+
+    The rows of the label are left out.
+    """
     import OpenImageIO
 
-    now = panel(CASES[name], "right", tools, folder)
-    kept = shown(ROOT / "docs/images" / f"guide-{name}.png", OpenImageIO.UINT8)
+    now = panel(CASES[name], "right", tools, folder)[:-LABEL_ROWS]
+    kept = shown(ROOT / "docs/images" / f"guide-{name}.png", OpenImageIO.UINT8)[:-LABEL_ROWS]
     return float(abs(kept[:, -now.shape[1] :].astype(float) - now).mean())
 
 
@@ -232,7 +257,10 @@ def main() -> None:
         with tempfile.TemporaryDirectory(prefix="bnvpl-guide.") as folder:
             tools, place = options.bin.resolve(), Path(folder)
             if not options.check:
-                write(name, [panel(CASES[name], side, tools, place) for side in ("left", "right")])
+                case = CASES[name]
+                sides = zip(("left", "right"), case.labels, strict=True)
+                panels = [labelled(panel(case, side, tools, place), text) for side, text in sides]
+                write(name, panels)
             elif (found := difference(name, tools, place)) > MAX_DIFFERENCE:
                 sys.exit(
                     f"docs/images/guide-{name}.png: differs by {found:.2f} steps of 255 from what "

@@ -39,6 +39,7 @@ class Scene:
     aspect: tuple[int, int] = (16, 9)
     options: tuple[str, ...] = ()
     author: str = ""
+    pictures: tuple[str, ...] = ("gallery",)  # and "author": beside the author's render
 
     @property
     def path(self) -> Path:
@@ -59,6 +60,7 @@ SCENES = (
         "The Grey & White Room (Wig42)",
         "living-room/living-room.pbrt",
         author="TungstenRender.exr",
+        pictures=("gallery", "author"),
     ),
     Scene(
         "bathroom",
@@ -66,6 +68,7 @@ SCENES = (
         "bathroom/bathroom.pbrt",
         aspect=(1, 1),
         author="TungstenRender.exr",
+        pictures=("gallery", "author"),
     ),
     Scene(
         "veach-ajar-pbrt",
@@ -84,6 +87,7 @@ SCENES = (
         "Room in glTF (ours)",
         "scenes/gltf-room/room.glb",
         options=("--camera", "Room"),
+        pictures=(),  # the README shows it
     ),
 )
 
@@ -120,9 +124,11 @@ class Gallery:
         )
 
     def picture(self, scene: Scene, spp: int) -> None:
+        if not scene.pictures:
+            return
         pixels = images.read(self.image(scene, "vpl", WIDTH, spp, 1))
         save(write_docs.srgb(pixels, exposure(pixels)), f"gallery-{scene.id}")
-        if scene.author:
+        if "author" in scene.pictures:
             theirs = images.read(scene.path.parent / scene.author)
             size = (640 * scene.aspect[1] // scene.aspect[0], 640)
             save(
