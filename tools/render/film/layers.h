@@ -42,7 +42,7 @@ struct PixelSums {
   // where the pixel filter is, or where a control variate predicts more light than there is.
   std::array<std::array<Vec3, kBrightest>, 2> brightest{};
 
-  // By which a sample is found to be a firefly: the size of its mean over the channels.
+  // Size of the mean over the channels: fireflies are told from other samples by it.
   static float magnitude(Vec3 light) { return std::fabs(mean(light)); }
   Vec3 photon(size_t k) const {
     const double* of = &sum[kPhotons + 3 * k];
