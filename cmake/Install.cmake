@@ -36,7 +36,7 @@ install(DIRECTORY pipelines scenes blender DESTINATION ${CMAKE_INSTALL_DATADIR}/
 
 # Pages keep their places, so that their links to each other lead somewhere.
 file(GLOB_RECURSE pages RELATIVE ${CMAKE_SOURCE_DIR} CONFIGURE_DEPENDS
-     bench/*.md docs/*.md docs/images/* docs/index.html eval/*.md formats/*.md pipelines/*.md python/*.md python/examples/* scenes/*.md
+     bench/*.md docs/*.md docs/*.csv docs/images/* docs/index.html eval/*.md formats/*.md fuzz/*.md pipelines/*.md python/*.md python/examples/* scenes/*.md
      tools/*.md transport/*.md)
 foreach(page README.md CHANGELOG.md CONTRIBUTING.md LICENSE ${pages})
   cmake_path(GET page PARENT_PATH folder)

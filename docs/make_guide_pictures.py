@@ -76,7 +76,7 @@ CASES = {
         "scenes/u-shape/scene.toml",
         "480x360",
         3,
-        ("photons shared out evenly", "guarded photons"),
+        ("--method even", "the default"),
         (
             "-n 60k",
             "-n 3k",

@@ -100,7 +100,7 @@ def arguments_of() -> argparse.Namespace:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument(
-        "--size", default="standard", help="of settings.toml: quick, standard, full"
+        "--size", default="standard", help="of settings.toml: quick, standard, full; field, ..."
     )
     parser.add_argument(
         "--quick", action="store_const", dest="size", const="quick", help="the same as --size quick"
@@ -144,6 +144,11 @@ def main() -> int:
     known = [*PARTS, *ALONE]
     if unknown := [part for part in parts if part not in known]:
         raise SystemExit(f"eval: no part '{unknown[0]}'; there are {', '.join(known)}")
+    for part in ALONE:
+        if (part in parts) != arguments.size.startswith(part) or (part in parts and len(parts) > 1):
+            raise SystemExit(
+                f"eval: part '{part}' runs alone, with sizes of its own; use make -C eval {part}"
+            )
     for part in NEED_METHODS & set(parts):
         if "methods" not in parts:
             raise SystemExit(f"eval: part '{part}' reads the rows of 'methods'; name that part too")

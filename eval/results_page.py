@@ -77,7 +77,7 @@ def errors(rows: Rows) -> Rows:
 def scatters(rows: Rows) -> Rows:
     """Mean ratio and relMSE of the default, of thesis scatter, and of the thesis as written."""
     head = ["scene"]
-    for method in ("guarded (default)", "even", "thesis to the letter"):
+    for method in ("both (default)", "even", "thesis to the letter"):
         head += [f"{method}: mean ratio", "relMSE"]
     table = [head]
     for scene, _, mean, relmse in columns(rows, "scene", "scatter", "mean ratio", "relMSE")[1:]:

@@ -77,7 +77,9 @@ def parse_arguments() -> argparse.Namespace:
     parser.add_argument(
         "--references-only", action="store_true", help="render the references, and stop"
     )
-    parser.add_argument("--no-table", action="store_true", help="leave docs/results.md as it is")
+    parser.add_argument(
+        "--no-table", action="store_true", help="leave docs/rooms.csv and the pages as they are"
+    )
     return parser.parse_args()
 
 

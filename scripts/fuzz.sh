@@ -14,6 +14,13 @@ if ((${#targets[@]} == 0)); then
   for corpus in fuzz/corpus/*/; do targets+=("$(basename "$corpus")"); done
 fi
 
+for name in "${targets[@]}"; do
+  if [[ ! -d fuzz/corpus/$name ]]; then
+    echo "fuzz.sh: no target is named $name; use $(basename -a fuzz/corpus/*/ | paste -sd' ')" >&2
+    exit 2
+  fi
+done
+
 scripts/install_packages.sh --build clang libclang-rt-14-dev llvm
 echo "Building the fuzz targets into build/fuzz"
 cmake --preset fuzz >/dev/null

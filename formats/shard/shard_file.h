@@ -3,7 +3,7 @@
 //     0  ShardHeader, 16 bytes
 //    16  blocks, one after the other
 //     .  directory: one ShardBlock for each block
-//     .  info: UTF-8 JSON that identifies the work and the part; README.md, "Shards"
+//     .  info: UTF-8 JSON that identifies the work and the part; formats/README.md, "Shards"
 //   end  ShardTrailer, 48 bytes
 //
 // A block is the record of one unit, or a range of the sums over all units, packed to their width.

@@ -1,5 +1,5 @@
 // .vpl: the bytes on disk, little-endian. Any change except an extra column bumps kVplVersion.
-// README.md explains the format; vpl_columns.h has the columns.
+// formats/README.md explains the format; vpl_columns.h has the columns.
 //
 //     0  VplHeader, 128 bytes
 //   128  directory: columnCount entries of 64 bytes

@@ -39,7 +39,8 @@ struct Opening {
 };
 
 // Reads header and directory, and verifies them against the format and the real size of the file.
-// The provenance comes next. Allocates no more than the directory. Throws FileError.
+// The provenance comes next. Allocates no more than the directory. Throws FileError,
+// or InputError for a shard or a checkpoint.
 Opening readOpening(InputFile& in);
 
 }  // namespace bnvpl

@@ -16,8 +16,8 @@ enum class VplStage : uint32_t { Candidates = 1, Eliminated = 2, Lit = 3 };
 // An extra column, which a method of a stage adds under its own name. Tools that do not know it
 // keep it.
 struct VplExtraColumn {
-  std::string name;         // METHOD.COLUMN, such as "rich.lobes": README.md
-  std::string unit = "1";   // see README.md, "Column directory"
+  std::string name;         // METHOD.COLUMN, such as "rich.lobes": formats/README.md
+  std::string unit = "1";   // see formats/README.md, "Column directory"
   uint32_t components = 1;  // number of values per row
   std::variant<std::vector<float>, std::vector<uint32_t>, std::vector<uint64_t>> values;
 

@@ -207,13 +207,12 @@ void SceneBuilder::resolveTextures() {
     if (map != kNone) map = read.indexOf.at(map);
   };
   for (Material& m : scene_.materials) forEachImage(m, resolve);
-  std::vector<bool> lost;  // expressions with an image that could not be read
+  std::vector<bool> lost;  // expressions with an image that is missing or could not be read
   const auto isLost = [&](uint32_t operand) { return operand != kNone && lost[operand]; };
   for (TextureExpression& e : scene_.expressions) {
-    const bool had = e.image != kNone;
     resolve(e.image);
-    lost.push_back((had && e.image == kNone) || isLost(e.first) || isLost(e.second) ||
-                   isLost(e.amount));
+    lost.push_back((e.kind == TextureExpression::Kind::Image && e.image == kNone) ||
+                   isLost(e.first) || isLost(e.second) || isLost(e.amount));
   }
   for (Material& m : scene_.materials) {
     if (m.emissionTexture == kNone || !lost[m.emissionTexture]) continue;

@@ -135,14 +135,18 @@ TEST(Caustics, PhotonsRemoveTheFirefliesOfSmallLights) {
             0.6 * noiseOf(by(world, lit, "0", "4"), 16, 1.0));
 }
 
-// A photon alone in its surroundings is a firefly. Redistribution over the surface keeps its light
-// and gives none to pixels that see nothing.
-TEST(Caustics, SinglePhotonsAreRedistributed) {
+World bulbsInView() {
   constexpr uint32_t kSide = 48;
   Scene scene = bulbs(0);
   scene.film = {kSide, kSide};
   scene.camera.verticalFovRad = 1.2f;  // wider than the box
-  const World world = shiny(std::move(scene), false);
+  return shiny(std::move(scene), false);
+}
+
+// A photon alone in its surroundings is a firefly. Redistribution over the surface keeps its light
+// and gives none to pixels that see nothing.
+TEST(Caustics, SinglePhotonsAreRedistributed) {
+  const World world = bulbsInView();
   const VplTable lit = fewVpls(world);
   const auto image = [&](const char* photons, const char* fireflies, uint64_t seed) {
     return renderVpls(world, lit,
@@ -182,6 +186,29 @@ TEST(Caustics, SinglePhotonsAreRedistributed) {
     EXPECT_GT(isVoid, 100u);
   }
   EXPECT_LT(errorMoved, 0.6 * errorKept);
+}
+
+// The lobes of a pixel filter that are negative surround a single photon by black pixels.
+TEST(Caustics, SinglePhotonsHaveNoBlackRings) {
+  const World world = bulbsInView();
+  const VplTable lit = fewVpls(world);
+  const auto blackPixels = [&](const char* fireflies) {
+    size_t black = 0;
+    for (uint64_t seed = 1; seed <= 6; ++seed) {
+      const Image image = renderVpls(world, lit,
+                                     {{"only", "indirect"},
+                                      {"caustic-photons", "2"},
+                                      {"filter", "mitchell"},
+                                      {"fireflies", fireflies},
+                                      {"seed", typed(seed)}})
+                              .image;
+      for (const float green : *image.find("G")) black += green < 0.0f;
+    }
+    return black;
+  };
+  const size_t kept = blackPixels("keep");
+  EXPECT_GT(kept, 100u);
+  EXPECT_LT(blackPixels("redistribute"), kept / 10);
 }
 
 // Light of an emitter with too few photons is left to the rays entirely.

@@ -282,6 +282,15 @@ TEST_F(SceneToml, AnEmissionTextureAloneShines) {
   EXPECT_EQ(materialNamed(dark, "paint").emission, Vec3());
 }
 
+TEST_F(SceneToml, AnEmissionTextureWithoutItsImageIsDark) {
+  const Scene scene =
+      load(base_ +
+           "[[texture]]\nname = \"t\"\ntype = \"image\"\nimage = \"missing.png\"\n"
+           "[[material]]\nname = \"paint\"\nmodel = \"diffuse\"\nemission_texture = \"t\"\n");
+  EXPECT_EQ(materialNamed(scene, "paint").emission, Vec3());
+  EXPECT_EQ(countContaining(scene.warnings, "does not shine"), 1u);
+}
+
 TEST_F(SceneToml, AMaterialThatNoFaceHasIsNamed) {
   const Scene scene = load(base_ + "[[material]]\nname = \"pain\"\nmodel = \"diffuse\"\n");
   ASSERT_EQ(scene.warnings.size(), 2u);  // the other one: no light

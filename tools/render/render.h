@@ -33,7 +33,7 @@ std::optional<PixelBox> cropOf(const Values& options, const Film& film);
 std::vector<const Layer*> layersOf(const Values& options);
 
 // Light groups that the image shows; empty unless --layers asks for them. Throws InputError if no
-// light of the scene has one.
+// light of the scene has one, and UsageError if the gather does not tell groups apart.
 std::vector<std::string> lightGroupsOf(const Values& options, const Scene& scene);
 
 // Number of samples and photons that progress will count; 0 if unknown.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <string_view>
@@ -15,10 +16,14 @@ namespace bnvpl {
 // The part of the light that an image shows.
 enum class Only { Everything, Direct, Indirect };
 
+// Size of a sample's or photon's light, by which fireflies are found: that of the mean over its
+// channels, which is negative in the negative lobes of a pixel filter.
+inline float magnitude(Vec3 light) { return std::fabs(mean(light)); }
+
 // The light of the photons that landed in a pixel, W/(m2 sr).
 struct PhotonLight {
   Vec3 all;
-  std::array<Vec3, 2> brightest;  // two photons, by the mean of the channels
+  std::array<Vec3, 2> brightest;            // the two photons of the largest magnitude()
   std::array<uint8_t, 2> brightestGroup{};  // their light groups
   const Vec3* groups = nullptr;             // `all` by light group; null: not told apart
 };

@@ -21,8 +21,9 @@ inline float silhouetteArea(const Bounds& box, Vec3 direction) {
   return faces.x + faces.y + faces.z;
 }
 
-// Directions of an environment image: u turns about +y from -z over +x, v goes down from +y. As for
-// a mesh, rotate_deg turns the image by the right-hand rule.
+// Directions of an environment image: u turns about +y from +z over -x and -z, the image's
+// centre, to +x; v goes down from +y. As for a mesh, rotate_deg turns the image by the right-hand
+// rule.
 inline Vec3 directionOf(const LightSpec& s, float u, float v) {
   const float phi = 2.0f * kPi * (u - 0.5f) - s.rotateRad, theta = kPi * v;
   return {std::sin(theta) * std::sin(phi), std::cos(theta), -std::sin(theta) * std::cos(phi)};

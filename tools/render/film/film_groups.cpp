@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "core/parallel.h"
-#include "tools/render/film/layers.h"
 
 namespace bnvpl {
 
@@ -31,8 +30,8 @@ void FilmGroups::keepBrightest(size_t pixel, size_t kind, Vec3 light, const Vec3
   const size_t row = 1 + count;
   Vec3* first = &brightest[pixel * brightestPerPixel() + 2 * kind * row];
   Vec3* second = first + row;
-  const float own = PixelSums::magnitude(light * share), largest = PixelSums::magnitude(*first);
-  if (!(own > PixelSums::magnitude(*second))) return;
+  const float own = magnitude(light * share), largest = magnitude(*first);
+  if (!(own > magnitude(*second))) return;
   if (own > largest) std::copy_n(first, row, second);
   Vec3* to = own > largest ? first : second;
   *to++ = light * share;

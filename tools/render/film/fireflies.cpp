@@ -98,7 +98,7 @@ std::vector<BothLights> excessOf(const FilmSums& film, Only only, const FilmValu
                          double{std::max({0.0f, others, around})};
     forBrightest(film, i, only, [&](size_t kind, Vec3 light, size_t rank) {
       const size_t shownKind = std::min<size_t>(kind, 1);
-      const double bound = kTimes[shownKind] * share, own{PixelSums::magnitude(light)};
+      const double bound = kTimes[shownKind] * share, own{magnitude(light)};
       if (!(own > bound)) return;
       const auto part = static_cast<float>(1.0 - bound / own);
       excess[i][shownKind] += light * part;

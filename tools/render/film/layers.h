@@ -3,7 +3,6 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -42,8 +41,6 @@ struct PixelSums {
   // where the pixel filter is, or where a control variate predicts more light than there is.
   std::array<std::array<Vec3, kBrightest>, 2> brightest{};
 
-  // Size of the mean over the channels: fireflies are told from other samples by it.
-  static float magnitude(Vec3 light) { return std::fabs(mean(light)); }
   Vec3 photon(size_t k) const {
     const double* of = &sum[kPhotons + 3 * k];
     return {float(of[0]), float(of[1]), float(of[2])};

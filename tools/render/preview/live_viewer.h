@@ -3,7 +3,7 @@
 // Renderers write into a copy of the film and mark its blocks of 64 x 64 pixels as changed, which
 // takes no time. A thread of its own sends changed blocks as fast as the viewer takes them: a block
 // that changes again before it is sent goes out once, with its newest pixels. A viewer that comes
-// late, or comes back, gets all blocks that have any light.
+// late, or comes back, gets all blocks that were shown so far.
 #pragma once
 
 #include <condition_variable>

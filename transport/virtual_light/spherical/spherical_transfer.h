@@ -25,8 +25,9 @@ struct SphericalLightTransfer {
   bool sampled;  // a mean of samples, no closed form
 };
 
-// Closed form where the receiver is diffuse and no horizon cuts the cone, else the mean of samples,
-// whose numbers depend on `key`.
+// Closed form where the receiver is diffuse and either no horizon cuts the cone or it lies in the
+// sphere with a shading normal that is its geometric one; else the mean of samples, whose numbers
+// depend on `key`.
 SphericalLightTransfer sphericalTransfer(const VirtualSphericalLight& vpl, const Bsdf& bsdf,
                                          uint64_t key);
 

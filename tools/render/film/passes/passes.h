@@ -17,7 +17,7 @@
 // dark.) The error above stays valid: the m_k - E[m_k] are steps of a martingale, so they are
 // uncorrelated, though of different variances. Only --target-error lets the estimate end the work:
 // an image that has met no firefly yet tells a small error and ends early, one that has goes on, so
-// that rare light is too dark on average (theory.md).
+// that rare light is too dark on average (tools/render/film/theory.md).
 #pragma once
 
 #include <cmath>

@@ -118,7 +118,7 @@ void Caustics::add(const Splat& splat) {
   Vec3 light = splat.radiance;
   auto group = static_cast<uint8_t>(splat.group);
   for (size_t k = 0; k < to.brightest.size(); ++k) {
-    if (!(mean(light) > mean(to.brightest[k]))) continue;
+    if (!(magnitude(light) > magnitude(to.brightest[k]))) continue;
     std::swap(light, to.brightest[k]);
     std::swap(group, to.brightestGroup[k]);
   }

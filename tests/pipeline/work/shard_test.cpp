@@ -227,7 +227,8 @@ TEST_F(ShardRun, WhatDoesNotBelongTogetherIsRefusedByName) {
   const auto refuse = [&](const std::string& names, const std::vector<std::string>& parts) {
     fail("vpl-merge", path("1.shard") + " " + names + " -o " + path("x.vpl"), kExitInput, parts);
   };
-  refuse(path("2.shard") + " " + path("2-3.shard"), {"2.shard and ", "2-3.shard both hold shard 2"});
+  refuse(path("2.shard") + " " + path("2-3.shard"),
+         {"2.shard and ", "2-3.shard both hold shard 2"});
   refuse(path("1.shard"), {"both hold shard 1 of 3", "leave one of them out"});
   refuse(path("four.shard"), {"four.shard: is one of 4 shards"});
   refuse(path("more.shard"), {"more.shard: is of another run", "count was 2000 and is now 3000"});

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/random_streams.h"
-#include "tests/render/random_lights.h"
+#include "tests/render/lights/random_lights.h"
 #include "tools/render/gather/receiver_tree.h"
 #include "tools/render/light_tree/normal_cone.h"
 #include "transport/virtual_light/spherical/spherical_transfer.h"

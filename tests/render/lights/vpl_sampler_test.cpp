@@ -9,7 +9,7 @@
 #include <set>
 
 #include "core/random_streams.h"
-#include "tests/render/random_lights.h"
+#include "tests/render/lights/random_lights.h"
 
 namespace bnvpl::test {
 namespace {

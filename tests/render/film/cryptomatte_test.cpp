@@ -1,4 +1,4 @@
-// Hashes and ranks of Cryptomatte; tests/pipeline/image_layers_test.cpp reads images back.
+// Hashes and ranks of Cryptomatte; tests/pipeline/images/image_layers_test.cpp reads images back.
 #include "tools/render/film/features/cryptomatte.h"
 
 #include <gtest/gtest.h>
