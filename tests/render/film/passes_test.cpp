@@ -20,8 +20,8 @@ struct Made {
 };
 
 // The camera sees nothing; the integrator alone provides the radiance.
-struct Film {
-  explicit Film(uint32_t width, uint32_t height) { scene.film = {width, height}; }
+struct RenderedFilm {
+  explicit RenderedFilm(uint32_t width, uint32_t height) { scene.film = {width, height}; }
   Made operator()(const Integrator& integrator, uint64_t passes, uint64_t seed, bool adaptive,
                   const WorkControls& controls = {}) const {
     Made made;
@@ -82,7 +82,7 @@ TEST(SpreadOrder, HasEveryTileOnceAndSpreadsTheFirst) {
 // Samples of a tile share a number, as they share a cut: twelve passes of four such samples are far
 // less accurate than 48 independent samples.
 TEST(PassError, IsTheTrueOneThoughSamplesOfATileAreCorrelated) {
-  const Film film(256, 256);
+  const RenderedFilm film(256, 256);
   const auto noise =
       seen([](uint32_t, float shared, float own) { return 1.0f + 0.4f * shared + 0.4f * own; });
   const Made m = film(noise, 12, 1, false);
@@ -95,7 +95,7 @@ TEST(PassError, IsTheTrueOneThoughSamplesOfATileAreCorrelated) {
 
 // Adaptive passes give some tiles more samples than others.
 TEST(PassError, IsTheTrueOneOfAdaptivePasses) {
-  const Film film(128, 96);
+  const RenderedFilm film(128, 96);
   const auto noise = seen([](uint32_t p, float, float own) {
     return p % 8 == 0 && own < 0.1f ? 10.0f : 1.0f + 0.2f * own;  // 1.9, and 1.1
   });
@@ -154,7 +154,7 @@ TEST(PassError, IsTheTrueOneOfARealScene) {
 // Bright samples are rare: a tile that found none in the first passes appears free of noise and
 // gets few more. Weighted by their numbers, samples would have a mean of 0.75 here (measured).
 TEST(AdaptivePasses, HaveNoBiasWhereBrightSamplesAreRare) {
-  const Film film(64, 64);
+  const RenderedFilm film(64, 64);
   constexpr float kRare = 1.0f / 4096.0f;
   const auto rare =
       seen([](uint32_t, float, float own) { return own < kRare ? 1.0f / kRare : 0.0f; });
@@ -187,7 +187,7 @@ TEST(AdaptivePasses, HaveTheExpectationOfUniformOnes) {
 }
 
 TEST(AdaptivePasses, GoWhereTheErrorIs) {
-  const Film film(64, 64);
+  const RenderedFilm film(64, 64);
   const auto half = [&](const TileSamples& tile) {
     for (CameraSample& s : tile.samples) {
       const bool noisy = s.direction.x > 0.0f;
@@ -205,7 +205,7 @@ TEST(AdaptivePasses, GoWhereTheErrorIs) {
 
 // However few samples a pass has, each pixel has one of them.
 TEST(AdaptivePasses, OfFewSamplesLeaveNoPixelOut) {
-  const Film film(64, 64);
+  const RenderedFilm film(64, 64);
   const auto noisy = seen([](uint32_t p, float, float own) { return p < 8 ? 2.0f * own : 1.0f; });
   for (const uint32_t spp : {1u, 2u, 3u}) {
     Made m;
@@ -220,7 +220,7 @@ TEST(AdaptivePasses, OfFewSamplesLeaveNoPixelOut) {
 // Camera samples and photons give the same bytes with any threads, and from every state that a
 // checkpoint may hold.
 TEST(Passes, SameBytesForAnyThreadsAndInterruptions) {
-  const Film film(40, 24);
+  const RenderedFilm film(40, 24);
   Integrator both =
       seen([](uint32_t p, float shared, float own) { return shared + float(p) * own; });
   for (const bool photons : {false, true}) {
@@ -252,7 +252,7 @@ TEST(Passes, SameBytesForAnyThreadsAndInterruptions) {
 
 // Photons contribute half of the light and all of its error.
 TEST(Passes, CountThePhotonsOfEachPass) {
-  const Film film(16, 16);
+  const RenderedFilm film(16, 16);
   Integrator both = seen([](uint32_t, float, float) { return 1.0f; });
   both.splatPhotons = [](uint64_t begin, uint64_t end, Splats& out) {
     for (uint64_t i = begin; i < end; ++i) {
@@ -267,7 +267,7 @@ TEST(Passes, CountThePhotonsOfEachPass) {
 }
 
 TEST(Passes, EndByTimeErrorOrNumber) {
-  const Film film(32, 32);
+  const RenderedFilm film(32, 32);
   const auto noise = seen([](uint32_t, float, float own) { return own; });
   const auto ended = [&](const PassBudget& budget) {
     Made m;
