@@ -111,6 +111,11 @@ TEST_F(Graph, SnakemakeMakesTheSameFiles) {
     expectTheSame(std::string("s/test-one-bounce/") + product, std::string("m/") + product);
   const Outcome again = shell(snakemake + "-n");
   EXPECT_TRUE(contains(again.out + again.err, "Nothing to be done")) << again.out << again.err;
+  // On a cluster --jobs is enough. This one takes no job.
+  const Outcome cluster =
+      shell("snakemake -s pipelines/Snakefile -d " + path("work") +
+            " --jobs 1 --cluster false --config bin=bin scenes=" + kScene + " out=" + path("c"));
+  EXPECT_TRUE(contains(cluster.out + cluster.err, "Building DAG")) << cluster.out << cluster.err;
 }
 
 TEST_F(Graph, ViewsShareTheirVpls) {
