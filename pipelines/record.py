@@ -14,7 +14,7 @@ together with this program, for example when its machine failed.
     start_s, end_s             seconds since 1970; there is no end_s while it runs
     cpu_s, peak_memory_MiB     cost of the command and its children; absent while it runs
     exit                       exit code; 128 plus the signal's number where a signal ended it
-    made                       by slurm/submit.py, of a success: size and time of inputs and outputs
+    made                       by slurm/task.py, of a success: size and time of inputs and outputs
 """
 
 from __future__ import annotations
