@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+
 #include "tests/support/pipeline.h"
 
 namespace bnvpl::test {
@@ -76,6 +78,21 @@ TEST(SampleAllocation, SignsOfThePixelFilterAreNoNoise) {
   const double factor{PixelFilter(FilterKind::Mitchell, 2.0f).squaredWeight()};
   EXPECT_GT(factor, 1.1);
   EXPECT_NEAR(mitchell / box, factor, 0.05 * factor);
+}
+
+// Light in the negative lobes is that of neighbours. Pilots in which it counts too often take the
+// difference of pixels for noise. One of 16 samples of an image has a negative weight.
+TEST(SampleAllocation, PilotsHaveNegativeWeightsAsOftenAsTheImage) {
+  World world("cornell/scene.toml");
+  world.scene.film = {64, 64};
+  std::atomic<size_t> negative = 0, all = 0;
+  findAllocation(world.scene, PixelFilter(FilterKind::Mitchell, 2.0f), 1, 16, Only::Everything, {},
+                 [&](const TileSamples& tile) {
+                   for (const CameraSample& s : tile.samples) negative += s.weight < 0.0f;
+                   all += tile.samples.size();
+                   return 1.0;
+                 });
+  EXPECT_NEAR(double(negative) / double(all), 1.0 / 16.0, 0.01);
 }
 
 TEST(SampleAllocation, OnlyShownLightCounts) {

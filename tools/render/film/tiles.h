@@ -54,7 +54,7 @@ class Tiles {
 struct SampleRange {
   uint32_t first = 0, end = 0;
   uint32_t all = 0;             // number of samples that are stratified together
-  uint64_t stride = 0;          // random streams reserved for each pixel; at least `all`
+  uint64_t stride = 0;          // random streams reserved for each pixel; at least `end`
   uint32_t sequenceOffset = 0;  // see TileLayout
 };
 

@@ -28,13 +28,14 @@ PilotTile samplePilot(const Scene& scene, const PixelFilter& filter, const Tiles
                       size_t index, uint64_t key, uint64_t spp, Only only,
                       const std::function<double(const TileSamples&)>& render) {
   const Tile tile = tiles.at(index);
-  constexpr SampleRange range{0, kPilotSlots, kPilotSlots, kPilotSlots};
+  // The pilot's samples have negative filter weights as often as the image's.
+  const auto all = static_cast<uint32_t>(std::clamp<uint64_t>(spp, kPilotSlots, 64));
+  const SampleRange range{0, kPilotSlots, all, kPilotSlots};
   std::vector<CameraSample> samples;
   for (uint32_t s = 0; s < kPilotSlots; ++s) {
     for (uint32_t p = 0; p < tile.pixels(); ++p)
       samples.push_back(makeSample(scene, filter, key, range, tile.x(p), tile.y(p), s));
   }
-  const auto all = static_cast<uint32_t>(std::clamp<uint64_t>(spp, kPilotSlots, 64));
   PilotTile out;
   out.cost = render({{tile.pixels(), tile.width(), tile.x0, tile.y0, 0, all,
                       random64(key, index, kDimPilotKey), 0},
