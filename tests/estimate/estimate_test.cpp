@@ -72,7 +72,7 @@ TEST(Estimate, StatedErrorMatchesTheSpreadOverSeeds) {
 TEST(Estimate, EmissionPointsLieOnTheVplsSurface) {
   const World world("furnace/scene.toml");
   const VplTable start = keptVpls(world, {{"count", "300"}}, {{"count", "6000"}});
-  const Given photons{{"photons", "100k"}};
+  const Given photons{{"photons", "100k"}, {"emit-points", "4"}};
   const VplTable still = lightVpls(world, start, with(photons, {{"emit-points", "0"}})).table;
   const VplTable lit = lightVpls(world, start, photons).table;
   EXPECT_EQ(still.emitPosition, start.position);

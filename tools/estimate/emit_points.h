@@ -16,7 +16,7 @@
 namespace bnvpl {
 
 inline constexpr WholeOption kEmitPointsOption = wholeOption(
-    "emit-points", "4", 0, kMaxEmitPoints, "",
+    "emit-points", "16", 0, kMaxEmitPoints, "",
     "emission points of each VPL, drawn in proportion to the light that leaves its surface; 0: it "
     "emits from its position");
 
