@@ -118,6 +118,19 @@ class QuickRun(unittest.TestCase):
         for row in self.rows("methods", method="local"):
             self.assertAlmostEqual(row["mean_ratio"], 1.0, delta=0.15)
 
+    def test_runs_have_about_the_mean_of_guided_paths(self) -> None:
+        few = "cornell --preset draft --runs 2 --guided-runs 2 --width 24 --spp 2 --guided-spp 8"
+        tools = ("--bin", BIN, "--cache", FOLDER / "cache")
+        command = [sys.executable, EVAL / "run_means.py", *tools, *few.split()]
+        done = subprocess.run(command, check=True, capture_output=True, text=True)
+        room, mean, extremes, deviation, error = done.stdout.splitlines()[-1].strip("| ").split("|")
+        self.assertEqual(room.strip(), "Cornell box")
+        least, largest = (float(value) for value in extremes.split(","))
+        self.assertTrue(least <= float(mean) <= largest and least < largest, extremes)
+        self.assertAlmostEqual(float(mean), 1.0, delta=0.08)
+        for percent in (deviation, error):
+            self.assertGreater(float(percent.split()[0]), 0.0)
+
     def test_blue_noise_is_better_than_light(self) -> None:
         for view in ("u-shape-main", "veach-door-main"):
             light, ours = (self.row("methods", view=view, method=m) for m in ("light", "local"))

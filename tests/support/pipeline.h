@@ -62,10 +62,11 @@ struct Preparations {
   std::vector<std::string> names;
 };
 
-// Small counts; every VPL is gathered, and only VPLs contribute indirect light.
+// Small counts; every VPL is gathered, and only VPLs contribute indirect light. The time of many
+// gathers grows with the emission points of a VPL.
 inline const Given kFewCandidates{{"count", "20k"}};
 inline const Given kFewVpls{{"count", "1000"}};
-inline const Given kFewPhotons{{"photons", "300k"}};
+inline const Given kFewPhotons{{"photons", "300k"}, {"emit-points", "4"}};
 inline const Given kPlainRender{{"gather", "all"}, {"compensate", "none"}, {"clamp", "1"},
                                 {"spp", "4"},      {"allocate", "off"},    {"fireflies", "keep"}};
 // The same for direct light alone, without the options of indirect light.
