@@ -28,6 +28,7 @@ class Counts:
     pixels: float = 0
     spp: float = 0
     shards: int = 1  # parts of the stage, of which a task does one and a merge reads all
+    threads: int = 1  # of a task
 
     @property
     def share(self) -> float:
@@ -118,6 +119,7 @@ TERMS: dict[str, dict[str, dict[str, Callable[[Counts], float]]]] = {
             "start": lambda c: 1,
             "triangles": lambda c: c.triangles,
             "VPLs": lambda c: c.vpls,
+            "VPLs x further threads": lambda c: c.vpls * (c.threads - 1),
         },
         "file_bytes": {
             "VPLs": lambda c: c.vpls if c.shards == 1 else 0,

@@ -42,4 +42,9 @@ inline bool sampleNextRay(const Accelerator& accel, const Bsdf& bsdf, LobeGroup 
   return true;
 }
 
+// Probability of going on by which Russian roulette follows the weight of a scattered ray.
+inline float survivalProbability(const BsdfSample& sample) {
+  return std::min(1.0f, maxComponent(sample.weight));
+}
+
 }  // namespace bnvpl

@@ -23,8 +23,8 @@ def eliminate(n: int, v: int) -> Run:
     return "eliminate", dict(candidates=n, vpls=v)
 
 
-def estimate(v: int, photons: int, shards: int = 1) -> Run:
-    return "estimate", dict(vpls=v, photons=photons, shards=shards)
+def estimate(v: int, photons: int, shards: int = 1, threads: int = 1) -> Run:
+    return "estimate", dict(vpls=v, photons=photons, shards=shards, threads=threads)
 
 
 def render(v: int, width: int, spp: int, shards: int = 1) -> Run:
@@ -48,6 +48,7 @@ FITTED: list[tuple[str, int, list[Run]]] = [
         estimate(1 * K, 1 * M), estimate(1 * K, 4 * M), estimate(4 * K, 1 * M),
         estimate(4 * K, 4 * M),
         estimate(20 * K, 4 * M), estimate(20 * K, 8 * M), estimate(4 * K, 4 * M, 16),
+        estimate(20 * K, 4 * M, threads=2), estimate(40 * K, 4 * M, threads=2),
         estimate(20 * K, 8 * M, 16),
         render(1 * K, 80, 1), render(1 * K, 160, 1), render(1 * K, 160, 8), render(4 * K, 80, 1),
         render(4 * K, 160, 4),

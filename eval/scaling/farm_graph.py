@@ -97,7 +97,7 @@ def job_of(
         factor * work / many,
         bool(task.checkpoint),
         factor * (setup + work),
-        model.predict(kind, "memory_MiB", counts),
+        model.predict(kind, "memory_MiB", dataclasses.replace(counts, threads=cores)),
         model.predict(kind, "file_bytes", counts) if "file_bytes" in terms else 0.0,
     )
 

@@ -1,4 +1,4 @@
-"""Runs the tools and measures CPU seconds of one thread, peak memory, and size of the file."""
+"""Runs the tools and measures CPU seconds, peak memory, and size of the file."""
 
 from __future__ import annotations
 
@@ -24,12 +24,11 @@ class Bench:
         self.bin, self.folder, self.spent_s = bin_folder, folder, 0.0
         self.made: dict[str, Path] = {}
 
-    def run(self, tool: str, *words: object) -> tuple[float, float]:
+    def run(self, tool: str, *words: object, threads: int = 1) -> tuple[float, float]:
         """Runs a tool. Returns CPU seconds and peak memory in MiB."""
         stats = self.folder / "stats.json"
-        command = [
-            str(w) for w in (self.bin / tool, *words, "--quiet", "--threads", "1", "--stats", stats)
-        ]
+        common = ("--quiet", "--threads", threads, "--stats", stats)
+        command = [str(w) for w in (self.bin / tool, *words, *common)]
         # Linux counts the memory of the process that starts a tool as the tool's. A shell in
         # between forks, so its small memory is counted instead of this program's.
         process = subprocess.Popen(
@@ -151,7 +150,7 @@ class Bench:
             tool, words, ending = self.command(scene, stage, c)
         output = self.folder / f"out.{'shard' if tool != 'vpl-merge' and c.shards > 1 else ending}"
         output.unlink(missing_ok=True)  # the tools replace no file of another kind
-        cpu_s, memory = self.run(tool, *words, "-o", output)
+        cpu_s, memory = self.run(tool, *words, "-o", output, threads=c.threads)
         found = {"cpu_s": cpu_s, "memory_MiB": memory}
         return found | ({} if tool == "vpl-merge" else {"file_bytes": output.stat().st_size})
 

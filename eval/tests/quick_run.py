@@ -120,8 +120,8 @@ class QuickRun(unittest.TestCase):
 
     def test_runs_have_about_the_mean_of_guided_paths(self) -> None:
         few = "cornell --preset draft --runs 2 --guided-runs 2 --width 24 --spp 2 --guided-spp 8"
-        tools = ("--bin", BIN, "--cache", FOLDER / "cache")
-        command = [sys.executable, EVAL / "run_means.py", *tools, *few.split()]
+        tools = ("--bin", str(BIN), "--cache", str(FOLDER / "cache"))
+        command = [sys.executable, str(EVAL / "run_means.py"), *tools, *few.split()]
         done = subprocess.run(command, check=True, capture_output=True, text=True)
         room, mean, extremes, deviation, error = done.stdout.splitlines()[-1].strip("| ").split("|")
         self.assertEqual(room.strip(), "Cornell box")

@@ -5,6 +5,7 @@ for scenes that take more work than the one to which the rates were fitted.
 """
 
 import argparse
+import dataclasses
 import json
 import math
 import re
@@ -71,7 +72,7 @@ class Needs:
         self.options, self.model = options, cost.load()
         self.whole: cost.Counts | None = None
 
-    def predict(self, stage: str, figure: str) -> float:
+    def predict(self, stage: str, figure: str, cores: int) -> float:
         if self.whole is None:
             o = self.options
             seen = look(o.scene, o)
@@ -85,16 +86,15 @@ class Needs:
             self.whole = cost.Counts(
                 seen["triangles"], candidates, vpls, photons, pixels_of(seen, o), spp
             )
-        return self.model.predict(
-            stage, figure, cost.with_shards(self.whole, stage, self.options.shards)
-        )
+        counts = cost.with_shards(self.whole, stage, self.options.shards)
+        return self.model.predict(stage, figure, dataclasses.replace(counts, threads=cores))
 
-    def memory(self, stage: str) -> str:
+    def memory(self, stage: str, cores: int) -> str:
         """Memory in the notation of sbatch --mem."""
-        mib = 0 if stage == "summary" else self.predict(stage, "memory_MiB")
+        mib = 0 if stage == "summary" else self.predict(stage, "memory_MiB", cores)
         return f"{memory_MiB(mib)}M"
 
     def time(self, stage: str, cores: int) -> str:
         """Time in minutes, in the notation of sbatch --time."""
-        seconds = 0 if stage == "summary" else self.predict(stage, "cpu_s") / cores
+        seconds = 0 if stage == "summary" else self.predict(stage, "cpu_s", cores) / cores
         return str(SPARE_MIN + math.ceil(ROOM_TIME * seconds / 60))

@@ -218,7 +218,7 @@ class Submission:
             each[kind] for each in (self.options.memory, self.options.time, self.options.cpus)
         )
         return (
-            self.needs.memory(name) if memory == "auto" else memory,
+            self.needs.memory(name, int(cores)) if memory == "auto" else memory,
             self.needs.time(name, int(cores)) if time == "auto" else time,
             cores,
         )

@@ -84,6 +84,22 @@ class ModelTest(unittest.TestCase):
             given = needs.memory_MiB(model.predict("render", "memory_MiB", counts))
             self.assertGreater(given, (sums + fireflies) * pixels / 2**20 + 64)
 
+    def test_jobs_get_the_memory_that_vpl_estimate_asks_for(self) -> None:
+        # memory_of_sums.h: the sums of photons of each thread, and their total.
+        points = int(
+            re.search(  # type: ignore[index]
+                r'"emit-points", "(\d+)"', (SOURCE / "tools/estimate/emit_points.h").read_text()
+            )[1]
+        )
+        sums = 104 + 32 * points
+        model = cost.load()
+        for threads in 1, 4, 16, 64:
+            for vpls in 5e4, 1e6:
+                counts = cost.Counts(1e4, 40 * vpls, vpls, 1e7, threads=threads)
+                given = needs.memory_MiB(model.predict("estimate", "memory_MiB", counts))
+                asked = vpls * (300 + (threads + 1) * sums) / 2**20
+                self.assertGreater(given, asked, (threads, vpls))
+
     def test_films_of_views(self) -> None:
         with tempfile.TemporaryDirectory() as folder:
             view = Path(folder) / "view.toml"

@@ -28,9 +28,10 @@ const VplTable& manyVpls() {
   return vpls;
 }
 
-// Draws one emission point for each of many VPLs, from hits `begin` to `end` of the same four.
-EmitPoints raced(size_t begin = 0, size_t end = kWeights.size(), uint64_t key = 7) {
-  EmitPoints points(manyVpls(), 1, key);
+// Draws emission points for each of many VPLs, from hits `begin` to `end` of the same four.
+EmitPoints raced(size_t begin = 0, size_t end = kWeights.size(), uint64_t key = 7,
+                 size_t perVpl = 1) {
+  EmitPoints points(manyVpls(), perVpl, key);
   for (size_t vpl = 0; vpl < kDraws; ++vpl) {
     for (size_t h = begin; h < end; ++h) points.offer(vpl, kWeights[h], hitAt(float(h)));
   }
@@ -51,14 +52,38 @@ TEST(EmitPoints, AreDrawnInProportionToTheLight) {
   }
 }
 
+// Each of several points has these shares, and any two of them are independent.
+TEST(EmitPoints, OfOneVplAreIndependent) {
+  constexpr size_t kPoints = 5;
+  const EmitPoints points = raced(0, kWeights.size(), 7, kPoints);
+  const auto hitOf = [&](size_t vpl, size_t k) {
+    return size_t(points.winners()[vpl * kPoints + k].position.x);
+  };
+  const auto expectShare = [](double share, double expected, size_t k) {
+    EXPECT_NEAR(share, expected, 4.5 * std::sqrt(expected * (1.0 - expected) / kDraws)) << k;
+  };
+  for (size_t k = 0; k < kPoints; ++k) {
+    std::array<double, 4> shares{};
+    double both = 0.0;
+    for (size_t vpl = 0; vpl < kDraws; ++vpl) {
+      shares[hitOf(vpl, k)] += 1.0 / kDraws;
+      both += (hitOf(vpl, k) == 1 && hitOf(vpl, (k + 1) % kPoints) == 3) / double(kDraws);
+    }
+    for (const size_t h : {0u, 1u, 3u}) expectShare(shares[h], kWeights[h] / 4.0, k);
+    expectShare(both, 0.5 * 0.375, k);
+  }
+}
+
 TEST(EmitPoints, MergeLikeTheWhole) {
-  const EmitPoints whole = raced();
-  for (const size_t middle : {1u, 3u}) {
-    EmitPoints behind = raced(middle, 4);
-    const EmitPoints before = raced(0, middle);
-    behind.add(before.winners());
-    for (size_t i = 0; i < kDraws; ++i)
-      ASSERT_EQ(behind.winners()[i].position, whole.winners()[i].position);
+  for (const size_t perVpl : {1u, 16u}) {
+    const EmitPoints whole = raced(0, 4, 7, perVpl);
+    for (const size_t middle : {1u, 3u}) {
+      EmitPoints behind = raced(middle, 4, 7, perVpl);
+      const EmitPoints before = raced(0, middle, 7, perVpl);
+      behind.add(before.winners());
+      for (size_t i = 0; i < whole.winners().size(); ++i)
+        ASSERT_EQ(behind.winners()[i].position, whole.winners()[i].position);
+    }
   }
 }
 

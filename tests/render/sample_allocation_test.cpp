@@ -4,8 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cmath>
 
 #include "tests/support/pipeline.h"
+#include "tools/render/tile/direct/direct_samples.h"
+#include "transport/camera.h"
 
 namespace bnvpl::test {
 namespace {
@@ -50,8 +53,7 @@ struct Light {
   float direct = 0.0f, indirect = 0.0f;
 };
 
-// The marginal cost that a pilot finds where light(sample index) is what each sample has, times its
-// weight of the pixel filter.
+// The marginal cost that a pilot finds where light(sample index) is what each sample has.
 double marginalCost(FilterKind filter, Only only, const std::function<Light(size_t index)>& light) {
   World world("cornell/scene.toml");
   world.scene.film = {64, 64};
@@ -60,8 +62,8 @@ double marginalCost(FilterKind filter, Only only, const std::function<Light(size
                           for (size_t i = 0; i < tile.samples.size(); ++i) {
                             CameraSample& s = tile.samples[i];
                             const Light found = light(i);
-                            s.radiance.direct = Vec3(found.direct * s.weight);
-                            s.radiance.indirect = Vec3(found.indirect * s.weight);
+                            s.radiance.direct = Vec3(found.direct);
+                            s.radiance.indirect = Vec3(found.indirect);
                           }
                           return 1.0;
                         })
@@ -81,18 +83,98 @@ TEST(SampleAllocation, SignsOfThePixelFilterAreNoNoise) {
 }
 
 // Light in the negative lobes is that of neighbours. Pilots in which it counts too often take the
-// difference of pixels for noise. One of 16 samples of an image has a negative weight.
-TEST(SampleAllocation, PilotsHaveNegativeWeightsAsOftenAsTheImage) {
+// difference of pixels for noise. One of 16 samples of an image lies there.
+TEST(SampleAllocation, PilotsLieInNegativeLobesAsOftenAsTheImageAndHaveNoWeights) {
+  World world("cornell/scene.toml");
+  const Film film = world.scene.film = {64, 64};
+  const PixelFilter filter(FilterKind::Mitchell, 2.0f);
+  std::atomic<size_t> negative = 0, all = 0, weighted = 0;
+  findAllocation(world.scene, filter, 1, 16, Only::Everything, {}, [&](const TileSamples& tile) {
+    for (size_t i = 0; i < tile.samples.size(); ++i) {
+      const CameraSample& s = tile.samples[i];
+      const RasterPoint at = projectToFilm(world.scene.camera, film, s.origin + s.direction);
+      const uint32_t p = static_cast<uint32_t>(i) % tile.pixels;
+      const float x = at.x * 64.0f - float(tile.x + p % tile.width) - 0.5f,
+                  y = at.y * 64.0f - float(tile.y + p / tile.width) - 0.5f;
+      negative += filter.density(x, y) < 0.0f;
+      weighted += tile.weighted || s.weight != 1.0f;
+    }
+    all += tile.samples.size();
+    return 1.0;
+  });
+  EXPECT_NEAR(double(negative) / double(all), 1.0 / 16.0, 0.01);
+  EXPECT_EQ(weighted, 0u);
+}
+
+// The mean of several direct samples, each with a weight of its own, has no weight to divide by.
+TEST(SampleAllocation, DirectSamplesOfPilotsHaveNoWeights) {
+  Scene scene = loadScene(fs::path(BNVPL_SCENES_DIR) / "furnace/scene.toml");
+  scene.film = {64, 64};
+  const World world(std::move(scene));  // every sample sees the same emission
+  const PixelFilter mitchell(FilterKind::Mitchell, 2.0f);
+  const DirectSamples direct(world.accel, world.lights, mitchell, nullptr, nullptr, 5, true);
+  const auto costWith = [&](bool weighted) {
+    return findAllocation(world.scene, mitchell, 1, 16, Only::Direct, {},
+                          [&](TileSamples tile) {
+                            tile.weighted = weighted;
+                            const std::vector<SpecularPath> paths(tile.samples.size());
+                            direct.render(tile, paths, nullptr, {}, 1.0, {});
+                            for (CameraSample& s : tile.samples)
+                              s.radiance.direct = s.radiance.emission;
+                            return 1.0;
+                          })
+        .marginalCost;
+  };
+  EXPECT_EQ(costWith(false), 0.0);
+  EXPECT_GT(costWith(true), 0.01);
+}
+
+// Photons of a pixel have no weight, unlike the rest of a sample's indirect light.
+TEST(SampleAllocation, LightOfTheWholePixelHasNoWeight) {
+  RadianceSample sample;
+  sample.ofPixel = Vec3(3.0f);
+  for (const float weight : {-1.25f, 1.0f, 1.5f}) {
+    sample.indirect = sample.ofPixel + Vec3(2.0f * weight);
+    EXPECT_FLOAT_EQ(mean(unweightedIndirect(sample, weight)), 5.0f) << weight;
+  }
+}
+
+// The median light is that of the tiles that have light, as before a black background.
+TEST(SampleAllocation, BlackTilesDoNotEndIt) {
   World world("cornell/scene.toml");
   world.scene.film = {64, 64};
-  std::atomic<size_t> negative = 0, all = 0;
-  findAllocation(world.scene, PixelFilter(FilterKind::Mitchell, 2.0f), 1, 16, Only::Everything, {},
-                 [&](const TileSamples& tile) {
-                   for (const CameraSample& s : tile.samples) negative += s.weight < 0.0f;
-                   all += tile.samples.size();
-                   return 1.0;
-                 });
-  EXPECT_NEAR(double(negative) / double(all), 1.0 / 16.0, 0.01);
+  const auto found = [&](uint32_t litColumns) {
+    return findAllocation(world.scene, {}, 1, 16, Only::Everything, {},
+                          [&](const TileSamples& tile) {
+                            for (size_t i = 0; i < tile.samples.size(); ++i) {
+                              tile.samples[i].radiance.direct = Vec3(tile.x >= litColumns ? 0.0f
+                                                                     : i / 64 % 2         ? 1.2f
+                                                                                          : 1.0f);
+                            }
+                            return 1.0;
+                          });
+  };
+  const SampleAllocation all = found(64), few = found(16);
+  EXPECT_GT(few.marginalCost, 0.0);
+  EXPECT_DOUBLE_EQ(few.medianLight, all.medianLight);
+  EXPECT_EQ(found(0).marginalCost, 0.0);
+}
+
+// A camera path that ends on a lamp has no indirect light, by which the number of direct samples is
+// chosen. So its emission counts only where this number is given.
+TEST(SampleAllocation, CameraPathsThatDecideOnDirectSamplesAreNotAmongThem) {
+  const World world("furnace/scene.toml");
+  const auto directWith = [&](unsigned count, float emission) {
+    const DirectSamples direct(world.accel, world.lights, {}, nullptr, nullptr, count, false);
+    std::vector<CameraSample> samples(64);
+    TileSamples tile{{.pixels = 64, .width = 8}, samples};
+    std::vector<SpecularPath> paths(64);
+    for (SpecularPath& path : paths) path.firstSegmentEmission = Vec3(emission);
+    direct.render(tile, paths, nullptr, {.variance = 1.0, .light = {}}, 1.0, {});
+    return double{mean(samples[27].radiance.direct)};
+  };
+  EXPECT_EQ(directWith(0, 100.0f), directWith(0, 0.0f));
+  EXPECT_NEAR(directWith(4, 100.0f) - directWith(4, 0.0f), 100.0 / 5.0, 1e-4);
 }
 
 TEST(SampleAllocation, OnlyShownLightCounts) {

@@ -1,7 +1,7 @@
 // Emission points of each VPL: points of the surface that it stands for, drawn in proportion to the
-// light that leaves there. Emission from such a point has the same expectation as emission from the
-// whole surface, for every receiver and past every occluder. Emission from any fixed point, such as
-// the centre, has not.
+// light that leaves there, in the mean over the channels. Emission from such a point has the same
+// expectation as emission from the whole surface, for every receiver and past every occluder, where
+// that light has one colour. Emission from any fixed point, such as the centre, has not.
 #pragma once
 
 #include <cstdint>
@@ -25,6 +25,7 @@ uint64_t positionHash(Vec3 p);
 
 // Weighted reservoir of one hit (Efraimidis & Spirakis 2006): each hit draws the key -ln(u) /
 // weight, and the smallest key wins, so a hit wins with a probability proportional to its weight.
+// The keys of one hit in all reservoirs of a VPL are independent.
 // Reservoirs can be merged in any order, so threads, checkpoints and shards give the same result.
 struct EmitPoint {  // without padding, as its bytes are saved
   double key = std::numeric_limits<double>::infinity();
@@ -42,7 +43,8 @@ class EmitPoints {
         radius_(vpls.radius),
         perVpl_(perVpl),
         key_(key),
-        winners_(vpls.size() * perVpl) {}
+        winners_(vpls.size() * perVpl),
+        limit_(perVpl > 0 ? vpls.size() : 0, std::numeric_limits<double>::infinity()) {}
 
   // Offers a hit whose light goes to the VPL; weight >= 0. Threads may call this for different
   // VPLs.
@@ -61,6 +63,7 @@ class EmitPoints {
   size_t perVpl_ = 0;
   uint64_t key_ = 0;
   std::vector<EmitPoint> winners_;
+  std::vector<double> limit_;  // at least the largest key of each VPL
 };
 
 }  // namespace bnvpl

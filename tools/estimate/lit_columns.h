@@ -14,6 +14,10 @@ namespace bnvpl {
 inline constexpr RealOption kRadiusOption =
     inTopic(Topic::Quality, realOption("radius", "1.7", 0.01, 100, "radii of the VPL",
                                        "distance within which a VPL collects light"));
+// Share of the mean flux that is added to a VPL's flux where its error is weighted by one over the
+// flux.
+inline constexpr double kMinFlux = 0.1;
+
 // Reach of each VPL, world units.
 std::vector<float> reachOf(const VplTable& vpls, float radius);
 // The surfaces that VPLs of this reach stand for. Borrows the VPLs and the accelerator.

@@ -17,8 +17,8 @@ int runEstimate(const StageRequest& request, const fs::path& input, const ToolOp
   run.used.writes("-o", request.output, {request.shard ? OutputKind::Shard : OutputKind::Lit});
   run.checkFiles();
   if (!run.predictsCost()) {
-    requireMemoryFor(input, kBytesPerEstimated + bytesPerVplAndThread(options) * threadsInUse(),
-                     "keep fewer with vpl-eliminate -n, or lower --threads");
+    requireMemoryFor(input, bytesPerEstimated(options, threadsInUse()),
+                     "keep fewer with vpl-eliminate -n, or lower --threads or --emit-points");
   }
   const VplTable vpls = readVpl(input, VplStage::Eliminated);
   const Scene scene = loadSceneFor(request.scene, Warnings::Hold);

@@ -156,7 +156,8 @@ PhotonSums tracePhotons(const EstimateInputs& in, const PhotonRun& run, const De
         if (progress) progress(count);
       },
       [&] { return encode(done, soFar()); });
-  PhotonSums sums = soFar();
+  PhotonSums sums = std::move(before);
+  for (const PhotonSums& s : perThread) sums.add(s);
   if (controls.sink) {
     controls.sink->sums(kPhotonWork, integersOf(sums));
     giveRecord(*controls.sink, kPhotonPointsWork, controls.shard.first, sums.points.winners());

@@ -13,10 +13,10 @@ namespace {
 
 constexpr uint64_t kPhotonsPerPilotPhoton = 32, kMaxPilot = 1 << 20;
 constexpr uint64_t kPilotPhotonsPerFluxPhoton = 4;  // those that estimate the VPLs' flux
-constexpr uint64_t kTrialPhotons = 1 << 16;  // limit for a cost trial (--estimate)
-constexpr double kMinFlux = 0.1;
+constexpr uint64_t kTrialPhotons = 1 << 16;         // limit for a cost trial (--estimate)
 
-// Weights of the VPLs' variances: one over the flux, by photons that start in proportion to power.
+// Weights of the VPLs' variances: one over the flux plus kMinFlux times the mean flux. Photons that
+// start by power measure it.
 std::vector<double> weightsByFlux(const EstimateInputs& in, const PhotonDeposits& deposits,
                                   const PhotonRun& run) {
   const auto phase = in.progress.beginPhase("flux pilot, photons", run.perLight.total());

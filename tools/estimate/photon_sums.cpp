@@ -1,5 +1,6 @@
 #include "tools/estimate/photon_sums.h"
 
+#include "core/parallel.h"
 #include "core/work_controls.h"
 
 namespace bnvpl {
@@ -27,13 +28,13 @@ void VplSum::add(const VplSum& o) {
 }
 
 void PhotonSums::add(const PhotonSums& o) {
-  for (size_t i = 0; i < vpl.size(); ++i) vpl[i].add(o.vpl[i]);
-  for (size_t i = 0; i < groups.size(); ++i) {
+  parallelFor(vpl.size(), 4096, [&](size_t i) { vpl[i].add(o.vpl[i]); });
+  parallelFor(groups.size(), 4096, [&](size_t i) {
     for (size_t c = 0; c < 3; ++c) {
       addChecked(groups[i].flux[c], o.groups[i].flux[c]);
       addChecked(groups[i].firstBounce[c], o.groups[i].firstBounce[c]);
     }
-  }
+  });
   points.add(o.points.winners());
   for (size_t t = 0; t < kTallies; ++t) addChecked(tally[t], o.tally[t]);
   hits += o.hits;

@@ -6,8 +6,6 @@
 
 namespace bnvpl {
 
-inline constexpr double kBytesPerEstimated = 400;  // per VPL
-
 // A shard knows only its own part, so it reports just the samples that were not finite.
 void reportShard(const EstimateResult& result, Summary& summary);
 void reportEstimate(const EstimateResult& result, Summary& summary);

@@ -39,7 +39,10 @@ PathSums VplPaths::tracePaths(uint32_t vpl, uint64_t points, EmitPoints& emitPoi
   const double x = double{shift.next()}, y = double{shift.next()};
   PhotonMis photons;
   if (!settings_.misRatio.empty() && settings_.misRatio[vpl] > 0.0f)
-    photons = {&in_.lights, 0.0f, 1.0f, nullptr, settings_.guide, settings_.misRatio[vpl]};
+    photons = {.lights = &in_.lights,
+               .photons = 1.0f,
+               .guide = settings_.guide,
+               .misRatio = settings_.misRatio[vpl]};
   for (uint64_t k = 0; k < points; ++k) {
     double atPoint = 0.0;
     Rng rng(random64(settings_.key, vpl, 1), k);

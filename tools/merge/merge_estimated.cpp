@@ -1,6 +1,7 @@
 #include "formats/vpl/vpl_io.h"
 #include "tools/common/process/memory.h"
 #include "tools/common/stage/scene_options.h"
+#include "tools/estimate/memory_of_sums.h"
 #include "tools/estimate/report.h"
 #include "tools/merge/merge.h"
 
@@ -12,7 +13,7 @@ std::vector<fs::path> mergeEstimated(ShardSet& shards, const MergeOutput& output
   const Values options = optionsOf(
       whole, estimateSpec(), [](const Given& given) { return resolve(estimateSpec(), given); });
   const fs::path input = fieldOf<std::string>(whole.sources, "vpls");
-  requireMemoryFor(input, kBytesPerEstimated, "keep fewer with vpl-eliminate -n");
+  requireMemoryFor(input, bytesPerEstimated(options, 0.0), "keep fewer with vpl-eliminate -n");
   const VplTable vpls = readVpl(input, VplStage::Eliminated);
   const Scene scene =
       loadSceneFor(sceneOptionsOf(fieldOf<Json>(whole.sources, "scene")), Warnings::Hold);

@@ -13,6 +13,7 @@ namespace bnvpl {
 namespace {
 
 constexpr size_t kMaxWorks = 64;  // kinds of work; a stage has at most ten
+constexpr size_t kMaxOpen = 256;  // files; processes may have 1024 by default
 
 }  // namespace
 
@@ -171,13 +172,16 @@ std::optional<std::string> ShardSet::record(std::string_view work, uint64_t unit
   return read(*at);
 }
 
+// Units take turns among the shards, so the files stay open.
+std::ifstream& ShardSet::opened(size_t file) {
+  if (const auto known = open_.find(file); known != open_.end()) return known->second;
+  if (open_.size() == kMaxOpen) open_.clear();
+  return open_.emplace(file, std::ifstream(files_[file], std::ios::binary)).first->second;
+}
+
 std::string ShardSet::read(Record& record) {
-  if (openFile_ != record.file) {
-    open_ = std::ifstream(files_[record.file], std::ios::binary);
-    openFile_ = record.file;
-  }
   record.verified = true;
-  return readShardBlock(files_[record.file], open_, record.block, record.offset);
+  return readShardBlock(files_[record.file], opened(record.file), record.block, record.offset);
 }
 
 void ShardSet::verifyRest() {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <fstream>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -55,6 +56,7 @@ class ShardSet {
   void joinParts(std::vector<Holder>& holders);
   std::optional<std::string> record(std::string_view work, uint64_t unit);
   std::string read(Record& record);
+  std::ifstream& opened(size_t file);
   std::vector<int64_t> sums(std::string_view work, size_t count) const;
 
   std::vector<fs::path> files_;
@@ -65,8 +67,7 @@ class ShardSet {
   std::vector<std::string> works_;
   std::vector<std::pair<std::string, size_t>> sums_;  // works with sums, and their number of sums
   std::vector<Record> records_;                       // sorted by work and unit
-  std::ifstream open_;                                // the file that was read last
-  size_t openFile_ = SIZE_MAX;
+  std::map<size_t, std::ifstream> open_;              // by index of the file
 };
 
 }  // namespace bnvpl

@@ -23,9 +23,11 @@ class PixelFilter {
   };
   // Which of the samples that are averaged this is. A filter with negative lobes gives a fixed
   // number of them a negative weight, so that the weights of all add up to their number. `key`
-  // decides which ones. With less than two samples the sign is random.
+  // decides which ones. With less than two samples the sign is random. `weighted`: whether the
+  // sample gets its weight; pilots, which measure noise, take 1 for all.
   struct Turn {
     uint64_t index = 0, count = 0, key = 0;
+    bool weighted = true;
   };
 
   PixelFilter() = default;  // the box over the pixel, of radius 1/2
@@ -36,11 +38,14 @@ class PixelFilter {
   float radius() const { return isPixel() ? 0.5f : axisRadius(); }
   // Value at a place relative to the pixel's centre, 1/pixel^2; its integral is 1.
   float density(float x, float y) const;
-  // Mean of the squared weights of samples: 1 for filters that are nowhere negative.
+  // Mean of the squared weights of many samples: 1 for filters that are nowhere negative. That of
+  // two samples of a filter with negative lobes is up to 1.8 times as large.
   float squaredWeight() const { return isPixel() ? 1.0f : axisSquaredWeight(); }
   // Maps the unit square to places with a density proportional to |density()|.
   Sample sample(Point2 u, const Turn& turn) const {
-    return isPixel() ? Sample{u} : samplePlaces(u, turn);
+    Sample out = isPixel() ? Sample{u} : samplePlaces(u, turn);
+    if (!turn.weighted) out.weight = 1.0f;
+    return out;
   }
   Sample sample(Point2 u) const { return sample(u, {}); }
 

@@ -46,16 +46,13 @@ PixelFilter filterOf(const Values& options) {
 }
 
 FilmOptions filmOptionsOf(const Values& options) {
-  return {static_cast<uint32_t>(options[kSppOption]),
-          options[kSeedOption],
-          onlyOf(options),
-          layersOf(options),
-          redistributesFireflies(options),
-          filterOf(options),
-          {},
-          {},
-          gatherFilterOf(options),
-          {}};
+  return {.spp = static_cast<uint32_t>(options[kSppOption]),
+          .seed = options[kSeedOption],
+          .only = onlyOf(options),
+          .layers = layersOf(options),
+          .redistributeFireflies = redistributesFireflies(options),
+          .filter = filterOf(options),
+          .gatherFilter = gatherFilterOf(options)};
 }
 
 // Whether the integrator traces photons for this image.
@@ -266,12 +263,16 @@ RenderResult joinRendered(const Film& film, const Values& options, const ShardSo
   return result;
 }
 
+namespace {
+
 // Options by which images of passes are prepared: --spp only limits their number, which changes
 // neither what they have in common nor the state of a checkpoint.
 Values preparingOptions(Values options) {
   if (budgetOf(options)) options.set(kSppOption, static_cast<uint64_t>(kUnlimitedSpp));
   return options;
 }
+
+}  // namespace
 
 Integrator makeIntegrator(const Accelerator& accel, const LightSet& lights, const VplTable& lit,
                           const Values& given, const ProgressFn& progress, CostTrial* trial) {

@@ -54,6 +54,7 @@ struct RadianceSample {
   Vec3 clamped;         // indirect light that the bound on 1/d^2 removed from the VPLs
   Vec3 compensated;     // indirect light by sampled rays instead of VPLs; part of `indirect`
   Vec3 gathered;        // light of VPLs that a film filter smooths; part of `indirect`
+  Vec3 ofPixel;         // light of the whole pixel, as of photons; part of `indirect`
   Vec3 albedo, normal;  // at the shading point
   float depth = 0.0f;   // first hit, along the viewing axis; 0: the ray hit nothing
   uint32_t cut = 0, shadowRays = 0;
@@ -66,13 +67,16 @@ inline Vec3 shownRadiance(const RadianceSample& sample, Only only) {
          (only != Only::Direct ? sample.indirect : Vec3{});
 }
 
+inline Vec3 finiteOrBlack(Vec3 light) { return isFinite(light) ? light : Vec3{}; }
+
 // The light of a sample without the weight of the pixel filter, and black where it is no number. A
 // filter with negative lobes gives a fixed number of samples negative weights, which cancel in an
 // evenly lit pixel: their signs are no noise. Times PixelFilter::squaredWeight(), the variance of
 // this light is that of the samples.
-inline Vec3 unweighted(Vec3 light, float weight) {
-  const Vec3 own = light * (1.0f / weight);
-  return isFinite(own) ? own : Vec3{};
+inline Vec3 unweighted(Vec3 light, float weight) { return finiteOrBlack(light * (1.0f / weight)); }
+// The same for all indirect light of a sample. What the whole pixel has in common has no weight.
+inline Vec3 unweightedIndirect(const RadianceSample& sample, float weight) {
+  return unweighted(sample.indirect - sample.ofPixel, weight) + finiteOrBlack(sample.ofPixel);
 }
 
 // The light of a sample by light group, W/(m2 sr): what RadianceSample has for all lights together.
@@ -84,7 +88,10 @@ struct SampleGroups {
   LightGroupSink emission() const { return {sums}; }
   LightGroupSink direct() const { return sinkOf(1); }    // without `emission`
   LightGroupSink indirect() const { return sinkOf(2); }  // without photons
-  // Scales emission and direct light.
+  // Clears, and scales, emission and direct light.
+  void clearDirect() const {
+    for (uint32_t k = 0; sums && k < 2 * count; ++k) sums[k] = {};
+  }
   void scaleDirect(float factor) const {
     for (uint32_t k = 0; sums && k < 2 * count; ++k) sums[k] *= factor;
   }
@@ -118,7 +125,8 @@ struct TileLayout {
   uint64_t key = 0;              // keys the tile's random numbers
   // Offset of sample 0 in sequences that the whole film shares; random for each pass.
   uint32_t sequenceOffset = 0;
-  uint32_t groups = 0;  // light groups that the samples tell apart; 0: none
+  uint32_t groups = 0;   // light groups that the samples tell apart; 0: none
+  bool weighted = true;  // whether samples have weights of the pixel filter; those of pilots have 1
 };
 
 struct TileSamples : TileLayout {

@@ -14,7 +14,7 @@ enum TileDimension : uint32_t {
   kDimVpl = 1,
   kDimStratum = 2,
   kDimPacket = 3,
-  kDimRoulette = 4,
+  kDimRoulette = 4,  // to 7: one for each packet, under keys of their own (ReceiverPacket)
   // Representatives of a pixel's samples (gather/multidimensional).
   kDimReceivers = 18,
   // Receivers of a slice's clusters (gather/matrix_completion).

@@ -88,7 +88,8 @@ struct LightWithPart {
 inline bool isBlack(const LightWithPart& light) {
   return isBlack(light.all) && isBlack(light.part);
 }
-// The same by all lobes and by `diffuse`, albedo over pi.
+// Like Reflected, but returns the light by all rough lobes and, as the part, that by a Lambertian
+// lobe of the value `diffuse` (albedo over pi).
 struct ReflectedWithDiffuse {
   using Light = LightWithPart;
   const Bsdf& bsdf;
@@ -198,10 +199,7 @@ typename Reflects::Light directLight(const Accelerator& accel, const LightSet& l
       Point2 at = numbers.point(k);
       const uint32_t stratum = strata.pick(at.x);
       const LightPoint point = strata.all->samplePoint(stratum, at);
-      const float count = static_cast<float>(learned.rays) * strata.probability(stratum) /
-                          strata.all->powerFraction(stratum) *
-                          strata.all->pickProbability(point.light);
-      ray(point, count);
+      ray(point, static_cast<float>(learned.rays) * strata.density(stratum, point.light));
     }
     return sum;
   }

@@ -183,8 +183,7 @@ float LearnedStrata::probability(uint32_t stratum) const {
 
 float LearnedStrata::density(const LightPoint& place) const {
   const uint32_t stratum = all->stratumOf(place);
-  if (stratum == kNone) return 0.0f;
-  return probability(stratum) / all->powerFraction(stratum) * all->pickProbability(place.light);
+  return stratum == kNone ? 0.0f : density(stratum, place.light);
 }
 
 }  // namespace bnvpl

@@ -2,11 +2,10 @@
 // a place can be learned, and lights sampled accordingly.
 //
 // A stratum is a rectangle of the unit square from which LightSet::sampleDirect() samples a point
-// of a light: a part of an area light or of an environment
-// light. With many lights it is a group of neighbouring
-// lights instead. Points within a stratum are sampled anew each time, so the lights are not
-// discretised. If stratum s has probability P, the density of a point is that of sampling all
-// lights by power, times P / powerFraction(s).
+// of a light: a part of an area light or of an environment light. With many lights it is a group of
+// neighbouring lights instead. Points within a stratum are sampled anew each time, so the lights
+// are not discretised. If stratum s has probability P, the density of a point is that of sampling
+// all lights by power, times P / powerFraction(s).
 #pragma once
 
 #include <span>
@@ -95,6 +94,10 @@ struct LearnedStrata {
   float probability(uint32_t stratum) const;
   // Density of sampling this point, relative to that of sampleDirect() for its light.
   float density(const LightPoint& place) const;
+  // The same for a point of this light in this stratum.
+  float density(uint32_t stratum, uint32_t light) const {
+    return probability(stratum) / all->powerFraction(stratum) * all->pickProbability(light);
+  }
 
  private:
   // An empty distribution leaves its weight to the more general ones.

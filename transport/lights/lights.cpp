@@ -50,7 +50,8 @@ void LightSet::requireSquares() const {
 }
 
 // Random numbers have 24 bits: a light of a smaller share beside a sun would never be picked, or
-// too often. So each that shines has four of them at least, and all shares are multiples of one.
+// too often. So each that shines has about four of them at least, and all shares are multiples of
+// one.
 void LightSet::setPickProbabilities(std::vector<double> weights) {
   constexpr double kSteps = 0x1p24;
   const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);

@@ -30,7 +30,8 @@ struct PhotonMis {
   const LightSet* lights = nullptr;  // null: there are no photons
   // BSDF rays per area, 1/unit^2, that took the specular lobes at all vertices so far.
   float rays = 0.0f;
-  float photons = 0.0f;  // number of photons from all lights
+  // Number of photons from all lights. With a misRatio only whether there are any matters.
+  float photons = 0.0f;
   // Emitters (emitterOf) that emit photons, ascending; null: all do. Rays alone estimate the
   // others.
   const std::vector<uint64_t>* emitters = nullptr;

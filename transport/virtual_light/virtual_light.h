@@ -11,8 +11,8 @@
 
 namespace bnvpl {
 
-// The VPLs that carry flux as point lights: one entry for each place from which a VPL shines, of
-// which it has --emit-points. Gathers and the light tree call an entry a VPL.
+// The VPLs that carry flux, as point lights: one entry for each emission point (coinciding ones are
+// one), with its part of the flux. Gathers, cuts and the light tree call an entry a VPL.
 struct VplLights {
   VplKind kind = {};
   std::vector<Vec3> position;  // offset off its surface, so that shadow rays end before it

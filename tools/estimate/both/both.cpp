@@ -81,11 +81,10 @@ class Estimator {
     const uint64_t sent = unitsToTry(
         in_.controls.trial, split.photons,
         kPhotonsPerRange * std::max<uint64_t>(kMinUnits, in_.vpls.size() / kVplsPerUnit));
-    const PhotonWork photons =
-        trace(kPhotonPhase, RandomStream::Photons, sent, split.misRatio,
-              static_cast<double>(split.photons) / static_cast<double>(sent));
+    PhotonWork photons = trace(kPhotonPhase, RandomStream::Photons, sent, split.misRatio,
+                               static_cast<double>(split.photons) / static_cast<double>(sent));
     const PathResult paths = traceSplitPaths(split);
-    return combine(split, photons, paths);
+    return combine(split, std::move(photons), paths);
   }
 
  private:
@@ -289,8 +288,7 @@ class Estimator {
   }
 
   // Flux of each VPL: the sum of the contributions of photons and paths, which have MIS weights.
-  EstimateResult combine(const Split& split, const PhotonWork& photons,
-                         const PathResult& paths) const {
+  EstimateResult combine(const Split& split, PhotonWork&& photons, const PathResult& paths) const {
     EstimateResult result{in_.vpls,
                           accountOf(photons.sums, photons.deposits, photons.perLight.total()), 0};
     VplTable& lit = result.table;
@@ -319,7 +317,7 @@ class Estimator {
     VplGroups groups = photons.deposits.groupFlux(photons.sums);
     addGroupsTo(groups, paths);
     finishGroups(std::move(groups), lit);
-    EmitPoints points = photons.sums.points;
+    EmitPoints points = std::move(photons.sums.points);
     points.add(paths.points.winners());
     points.fill(lit);
     return result;

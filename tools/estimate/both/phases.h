@@ -28,7 +28,7 @@ class Phases {
   // finished phase. `trialScale` is that of WorkControls.
   template <typename Body, typename Finished>
   auto run(size_t k, double trialScale, const Body& body, const Finished& finished) {
-    WorkControls part{states_[k], whole_.pause, [&](const std::string& state) {
+    WorkControls part{std::move(states_[k]), whole_.pause, [&](const std::string& state) {
                         states_[k] = state;
                         whole_.save(encoded());
                       }};
@@ -37,7 +37,7 @@ class Phases {
     if (k >= kFirstShared)
       part.shard = whole_.shard, part.sink = whole_.sink, part.source = whole_.source;
     auto result = body(part);
-    if (whole_.pause) states_[k] = finished(result);
+    if (whole_.pause && !whole_.trial && k + 1 < kCount) states_[k] = finished(result);
     return result;
   }
 

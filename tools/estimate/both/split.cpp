@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <ranges>
 
 #include "core/parallel.h"
 #include "spatial/compatible_surface.h"
 #include "spatial/kd_tree.h"
 #include "tools/estimate/both/irradiance_probes.h"
+#include "tools/estimate/lit_columns.h"
 
 namespace bnvpl::methods::estimate::both {
 
@@ -24,9 +26,6 @@ constexpr double kMaxDeviations = 2.0;
 // Photons always get at least one of this many parts of the work, since some light is found only by
 // photons.
 constexpr int kParts = 16;
-// Share of the mean flux that is added to a VPL's flux where its error is weighted by one over the
-// flux.
-constexpr double kMinFlux = 0.1;
 // Budgets that smallestAllocation() tries, in steps of a quarter of an octave.
 constexpr int kSteps = 24;
 constexpr double kStep = 0.8408964152537145;  // 2^(-1/4)
@@ -36,9 +35,9 @@ struct Pooled {
   double flux = 0.0, variance = 0.0;
 };
 
-// The mean over light of the density with which its photons start, relative to emission by power:
-// by how much photons vary less than if they started so. Where the pool has no photons, it is that
-// of the pool around it.
+// Sum of g x^2 over that of x^2, over the pool's deposits x of photons that started with the
+// density g: by how much photons vary less than if they started by power. Where the pool has no
+// photons, it is that of the pool around it.
 double startDensity(std::span<const uint32_t> pool, const std::vector<PilotEstimate>& photons,
                     double around) {
   double variance = 0.0, byPower = 0.0;
@@ -60,12 +59,14 @@ double meanSample(const std::vector<PilotEstimate>& found) {
   return flux > 0.0 ? variance / flux : 0.0;
 }
 
-// Statistics of a VPL, pooled over those around it: the variance of a single photon and of a single
-// point, the flux, the cost of a point, and startDensity(); and flux and variance of a single
-// photon of the light that only photons find.
+// Statistics of a VPL, pooled over those around it.
 struct VplStatistics {
-  double photonVariance = 0.0, pointVariance = 0.0, flux = 0.0, pointCost = 0.0, startDensity = 1.0;
-  double onlyFlux = 0.0, onlyVariance = 0.0;
+  double photonVariance = 0.0,
+         pointVariance = 0.0;  // of one photon's deposit, and of one point, W^2
+  double flux = 0.0;           // W, without onlyFlux
+  double pointCost = 0.0;      // rays
+  double startDensity = 1.0;
+  double onlyFlux = 0.0, onlyVariance = 0.0;  // light that only photons find: W, and W^2 a photon
   double allFlux() const { return flux + onlyFlux; }
 };
 
@@ -162,50 +163,67 @@ std::vector<VplStatistics> poolAllPilots(const VplTable& vpls, const Pilots& pil
   return statistics;
 }
 
-// Neyman's allocation of points to VPLs for a given number of photons. The Lagrange multiplier
-// lambda is the error that a unit of cost saves.
+// Neyman's allocation of points to VPLs beside P photons. The error of VPL i is
+// w_i / (P / v_i + n_i / u_i). It falls alike everywhere for its cost c_i n_i where
+//
+//   n_i = max(0, a_i s - b_i P),     a_i = sqrt(w_i u_i / c_i),     b_i = u_i / v_i
+//
+// and the scale s, one over the root of Lagrange's multiplier, is the same for all VPLs.
 class PointAllocation {
  public:
   explicit PointAllocation(std::vector<VplStatistics> statistics)
-      : vpls_(std::move(statistics)), weight_(vpls_.size()) {
+      : vpls_(std::move(statistics)),
+        weight_(vpls_.size()),
+        perScale_(vpls_.size()),
+        perPhoton_(vpls_.size()) {
     double mean = 0.0;
     for (const VplStatistics& v : vpls_) mean += v.allFlux() / static_cast<double>(vpls_.size());
-    for (size_t i = 0; i < weight_.size(); ++i)
-      weight_[i] = 1.0 / std::max(vpls_[i].allFlux() + kMinFlux * mean, 1e-300);
+    for (size_t i = 0; i < vpls_.size(); ++i) {
+      const VplStatistics& v = vpls_[i];
+      weight_[i] = 1.0 / std::max(v.allFlux() + kMinFlux * mean, 1e-300);
+      if (!(v.pointVariance > 0.0)) continue;
+      perScale_[i] = std::sqrt(weight_[i] * v.pointVariance / v.pointCost);
+      perPhoton_[i] = v.pointVariance / v.photonVariance;
+      if (const double from = perPhoton_[i] / perScale_[i]; std::isfinite(from))
+        steps_.push_back({from, v.pointCost * perScale_[i], v.pointCost * perPhoton_[i]});
+    }
+    std::ranges::sort(steps_, {}, &Step::from);
+    for (size_t k = 1; k < steps_.size(); ++k)
+      steps_[k].perScale += steps_[k - 1].perScale, steps_[k].perPhoton += steps_[k - 1].perPhoton;
   }
 
-  // Number n of points of VPL i that minimises
-  // weight / (photons / photonVariance + n / pointVariance) + lambda pointCost n.
-  double at(size_t i, double photons, double lambda) const {
-    const VplStatistics& v = vpls_[i];
-    if (!(v.pointVariance > 0.0)) return 0.0;
-    return std::max(0.0, std::sqrt(weight_[i] * v.pointVariance / (lambda * v.pointCost)) -
-                             photons * v.pointVariance / v.photonVariance);
+  // Number of points of VPL i.
+  double at(size_t i, double photons, double scale) const {
+    return std::max(0.0, perScale_[i] * scale - perPhoton_[i] * photons);
   }
-  double costAt(double photons, double lambda) const {
+  double costAt(double photons, double scale) const {
     double sum = 0.0;
-    for (size_t i = 0; i < vpls_.size(); ++i) sum += vpls_[i].pointCost * at(i, photons, lambda);
+    for (size_t i = 0; i < vpls_.size(); ++i) sum += vpls_[i].pointCost * at(i, photons, scale);
     return sum;
   }
-  // Lagrange multiplier for which all points together have this cost.
-  double lambdaFor(double photons, double cost) const {
-    double low = -700.0, high = 700.0;  // bounds of log(lambda)
-    for (int step = 0; step < 60; ++step) {
-      const double middle = (low + high) / 2.0;
-      (costAt(photons, std::exp(middle)) > cost ? low : high) = middle;
-    }
-    return std::exp(high);
+  // The scale for which all points together have this cost.
+  double scaleFor(double photons, double cost) const {
+    const auto cheaper =
+        [&](size_t k) {  // whether the VPLs before the k-th cost less, where it begins
+          const double scale = photons * steps_[k].from;
+          return steps_[k - 1].perScale * scale - steps_[k - 1].perPhoton * photons < cost;
+        };
+    if (steps_.empty() || !(cost > 0.0)) return 0.0;
+    const auto later = std::views::iota(size_t{1}, steps_.size());
+    const Step& last =
+        steps_[static_cast<size_t>(std::ranges::partition_point(later, cheaper) - later.begin())];
+    return (cost + last.perPhoton * photons) / last.perScale;
   }
-  double weightedVarianceAt(double photons, double lambda) const {
+  double weightedVarianceAt(double photons, double scale) const {
     double sum = 0.0;
-    for (size_t i = 0; i < vpls_.size(); ++i) sum += weight_[i] * variance(i, photons, lambda);
+    for (size_t i = 0; i < vpls_.size(); ++i) sum += weight_[i] * variance(i, photons, scale);
     return sum;
   }
-  double relativeErrorAt(double photons, double lambda, const IrradianceProbes& probes) const {
+  double relativeErrorAt(double photons, double scale, const IrradianceProbes& probes) const {
     std::vector<double> flux, variances;
     for (size_t i = 0; i < vpls_.size(); ++i) {
       flux.push_back(vpls_[i].allFlux());
-      variances.push_back(variance(i, photons, lambda));
+      variances.push_back(variance(i, photons, scale));
     }
     return probes.relativeError(flux, variances);
   }
@@ -218,31 +236,37 @@ class PointAllocation {
   }
 
  private:
-  double variance(size_t i, double photons, double lambda) const {
+  double variance(size_t i, double photons, double scale) const {
     const VplStatistics& v = vpls_[i];
     const double known = photons / v.photonVariance;
     const double shared =
-        1.0 / (v.pointVariance > 0.0 ? known + at(i, photons, lambda) / v.pointVariance : known);
+        1.0 / (v.pointVariance > 0.0 ? known + at(i, photons, scale) / v.pointVariance : known);
     return shared + v.onlyVariance / photons;
   }
 
+  // A VPL gets points from the scale `from` P on. Sums over it and those that get points earlier:
+  // of c a and of c b.
+  struct Step {
+    double from, perScale, perPhoton;
+  };
+
   std::vector<VplStatistics> vpls_;
-  std::vector<double> weight_;
+  std::vector<double> weight_, perScale_, perPhoton_;  // w, a and b of each VPL
+  std::vector<Step> steps_;                            // in the order in which VPLs get points
 };
 
-// Number of photons, the multiplier that allots points, and the weighted sum of variances that
-// results.
+// Number of photons, the scale that allots points, and the weighted sum of variances that results.
 struct Allocation {
-  double photons = 0.0, lambda = INFINITY, weightedVariance = INFINITY;
+  double photons = 0.0, scale = 0.0, weightedVariance = INFINITY;
 };
 
 Allocation bestAllocation(const PointAllocation& points, double photonCost, double cost) {
   Allocation best;
   for (int part = 1; part <= kParts; ++part) {
     const double ofPhotons = cost * part / kParts, photons = ofPhotons / photonCost;
-    const double lambda = part == kParts ? INFINITY : points.lambdaFor(photons, cost - ofPhotons);
-    const double variance = points.weightedVarianceAt(photons, lambda);
-    if (variance < best.weightedVariance) best = {photons, lambda, variance};
+    const double scale = part == kParts ? 0.0 : points.scaleFor(photons, cost - ofPhotons);
+    const double variance = points.weightedVarianceAt(photons, scale);
+    if (variance < best.weightedVariance) best = {photons, scale, variance};
   }
   return best;
 }
@@ -258,7 +282,7 @@ Allocation smallestAllocation(const PointAllocation& points, const VplTable& vpl
   for (int step = 0; step < kSteps; ++step) {
     cost *= kStep;
     const Allocation less = bestAllocation(points, photonCost, cost);
-    if (!(points.relativeErrorAt(less.photons, less.lambda, probes) <= budget.error)) break;
+    if (!(points.relativeErrorAt(less.photons, less.scale, probes) <= budget.error)) break;
     best = less;
   }
   return best;
@@ -282,10 +306,10 @@ Split splitWork(const VplTable& vpls, const Accelerator& accel, const Pilots& pi
   split.points.resize(vpls.size());
   split.misRatio.resize(vpls.size());
   const auto photons = static_cast<double>(split.photons);
-  split.cost = photons * pilots.photonCost + points.costAt(photons, best.lambda);
+  split.cost = photons * pilots.photonCost + points.costAt(photons, best.scale);
   split.costShare = std::min(1.0, split.cost / budget.cost);
   for (size_t i = 0; i < vpls.size(); ++i) {
-    split.points[i] = static_cast<uint64_t>(std::llround(points.at(i, photons, best.lambda)));
+    split.points[i] = static_cast<uint64_t>(std::llround(points.at(i, photons, best.scale)));
     split.misRatio[i] =
         static_cast<float>(points.misRatio(i, photons, static_cast<double>(split.points[i])));
   }

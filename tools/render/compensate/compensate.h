@@ -33,7 +33,7 @@ struct UncoveredShare {
   }
 };
 
-// The light from a point to the receiver whose ray hit it that VPLs leave out.
+// What VPLs leave out of the light that a point sends to the receiver whose ray hit it.
 struct Uncovered {
   float share = 0.0f;  // part of the point's light, 0..1
   // Radiance that leaves the point without first-bounce light, W/(m2 sr), from the VPL's flux. If

@@ -21,7 +21,7 @@ void FilmGroups::add(size_t pixel, const CameraSample& sample, Only only, float 
     for (size_t c = 0; c < 3; ++c) sum[3 * g + c] += double{light[c]} * double{share};
   }
   keepBrightest(pixel, 0, r.direct - r.emission, direct, share);
-  keepBrightest(pixel, 1, r.indirect - r.photons.all, indirect, share);
+  keepBrightest(pixel, 1, r.indirect - r.photons.all - r.gathered, indirect, share);
   for (size_t k = 0; k < 2; ++k) photons[2 * pixel + k] = r.photons.brightestGroup[k];
 }
 

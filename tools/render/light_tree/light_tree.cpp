@@ -4,6 +4,7 @@
 #include <numeric>
 #include <queue>
 
+#include "core/memory.h"
 #include "core/random_streams.h"
 #include "tools/render/light_tree/normal_cone.h"
 #include "tools/render/light_tree/orientation_split.h"
@@ -162,6 +163,9 @@ VplDraw LightTree::at(const LightNode& n, uint32_t place) const {
 LightTree buildLightTree(const VplLights& vpls, uint64_t seed, LightSplit by) {
   LightTree tree;
   if (vpls.size() == 0) return tree;
+  requireMemory(2.0 * sizeof(LightNode) * static_cast<double>(vpls.size()),
+                "the light tree of " + std::to_string(vpls.size()) + " emission points",
+                "keep fewer VPLs with vpl-eliminate -n, or lower vpl-estimate --emit-points");
   tree.nodes.reserve(2 * vpls.size());
   Builder builder(vpls, seed, by, tree);
   builder.build(0, vpls.size());

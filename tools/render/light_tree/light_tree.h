@@ -89,7 +89,7 @@ struct LightTree {
 enum class LightSplit { Middle, Orientation };
 
 // Builds the tree top-down in O(N log N). A parent takes the representative of one child, drawn in
-// proportion to intensity. Deterministic for a seed.
+// proportion to intensity. Deterministic for a seed. Throws MemoryError if it would not fit.
 LightTree buildLightTree(const VplLights& vpls, uint64_t seed, LightSplit by = LightSplit::Middle);
 
 }  // namespace bnvpl

@@ -7,7 +7,7 @@ namespace bnvpl {
 namespace {
 
 // With sample allocation a quarter of the rays is a pilot, and at most four times as many follow.
-constexpr unsigned kPilotShare = 4, kMaxTimes = 4;
+constexpr unsigned kRaysPerPilotRay = 4, kMaxTimes = 4;
 // The pilot reuses vertices in one of kSamplesPerPilot sample indices, to estimate the noise of
 // reused light.
 constexpr size_t kSamplesPerPilot = 4;
@@ -37,7 +37,7 @@ void TileIndirectRays::send(unsigned rays) {
 }
 
 void TileIndirectRays::sendAllocated(const SampleAllocation& allocation, Vec3 meanDirect) {
-  const unsigned pilot = (parts_.raysEach + kPilotShare - 1) / kPilotShare;
+  const unsigned pilot = (parts_.raysEach + kRaysPerPilotRay - 1) / kRaysPerPilotRay;
   // The parities have sequences of their own: in one sequence, a point that found a bright source
   // for one parity would leave none there for the other, whose number of rays grows by it.
   for (size_t i = 0; i < found_.size(); ++i)

@@ -33,6 +33,7 @@ double TileIntegrator::render(const TileSamples& tile, const SampleAllocation& a
     RadianceSample& out = tile.samples[i].radiance;
     out.photons = parts_.caustics->at(tile.x + pixel % tile.width, tile.y + pixel / tile.width);
     out.indirect += out.photons.all;
+    out.ofPixel += out.photons.all;
   }
   cost /= double(count);
   if (parts_.directSamples) {
@@ -134,6 +135,7 @@ void TileIntegrator::gatherVpls(const TileSamples& tile, const ShadingPoints& po
     const Gathered& from = gathered[sums ? i % tile.pixels : i];
     const Vec3 factor = sums ? part : points.paths[i].throughput;
     out.indirect += factor * from.radiance;
+    if (sums) out.ofPixel += factor * from.radiance;
     if (parts_.gathersForFilter) out.gathered += factor * from.radiance;
     out.clamped += factor * from.clamped;
     out.cut += gathered[i].cut;

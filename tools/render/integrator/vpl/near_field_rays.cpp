@@ -9,10 +9,9 @@ namespace bnvpl {
 
 namespace {
 
-// Maximal number of segments of a path. The path goes on only with the probability of the uncovered
-// share.
-// From kSureSegments on, a path is absorbed as often as the surface absorbs light (Russian
-// roulette). kMaxSegments only ends what would never end.
+// A path goes on with the probability of the uncovered share, so most paths end soon. From
+// kSureSegments segments on, Russian roulette by the scattering weight ends paths, too.
+// kMaxSegments bounds what neither ends.
 constexpr unsigned kSureSegments = 16, kMaxSegments = 256;
 // Number of VPLs sampled at a vertex: few, and fewer at later vertices, whose noise matters less
 // (measured).
@@ -146,7 +145,7 @@ void NearFieldRays::follow(const FirstSegment& start, const ReachGrid::Lookup& c
     goesOn = uncovered.share > 0.0f;
     if (goesOn) {
       const Bsdf bsdf(accel_.scene(), segment.hit);
-      goesOn = survives(path, uncovered, bsdf);
+      goesOn = passesRoulette(path, uncovered, bsdf);
       if (goesOn) {
         if (reuse) path.makeReusable(uncovered, bsdf);
         shade(path, uncovered, bsdf);
@@ -182,15 +181,19 @@ Uncovered NearFieldRays::uncoveredAt(const SurfacePoint& hit, bool straight,
                                      const ReachGrid::Lookup* coverLookup, Rng& rng) const {
   if (!compensation_.byRays()) return {straight ? 0.0f : 1.0f, {}};
   Uncovered out = compensation_.uncovered(hit, hit.distance, coverLookup, rng);
-  // VPLs carry no light over specular vertices, but their radiance is right there, too.
+  // No VPL carries light over specular vertices, so the share is 1. The mean radiance that a VPL
+  // knows holds at the hit as elsewhere.
   if (!straight) out.share = 1.0f, out.byDistance = {};
   return out;
 }
 
-// Russian roulette with the uncovered share, unless a VPL knows the radiance: then the share is a
-// weight in shade(). Where it also decided on the lobes at the first hit, a part of it is already
-// in the probability of the rough ones.
-bool NearFieldRays::survives(Path& path, const Uncovered& uncovered, const Bsdf& bsdf) const {
+// Russian roulette by the uncovered share s, unless a VPL knows the radiance: then s is a weight in
+// shade(). A path that chose lobes at its first hit took the rough ones with the probability
+// (1 - q) w / Q, where q = specularProbability(), w = roughImportance and Q = q + (1 - q) w, and
+// carries the inverse. It goes on with s Q / w, which makes (1 - q) s, and is multiplied by w / Q,
+// which leaves the weight 1 / (1 - q). Both throughputs get this factor: the path's, and that of
+// the segment, from which makeReusable() begins anew.
+bool NearFieldRays::passesRoulette(Path& path, const Uncovered& uncovered, const Bsdf& bsdf) const {
   if (uncovered.multiBounceRadiance) return true;
   float probability = uncovered.share;
   if (path.choseLobes()) {
@@ -242,7 +245,7 @@ bool NearFieldRays::extend(Path& path, const Bsdf& bsdf) const {
     return false;
   }
   if (path.segments >= kSureSegments) {
-    const float survival = std::min(1.0f, maxComponent(sample.weight));
+    const float survival = survivalProbability(sample);
     if (!(path.rng.next() < survival)) return false;
     sample.weight *= 1.0f / survival;
   }

@@ -43,7 +43,7 @@ class NearFieldRays : public IndirectRays {
   void begin(Path& path, const ReachGrid::Lookup& coverLookup) const;
   Uncovered uncoveredAt(const SurfacePoint& hit, bool straight,
                         const ReachGrid::Lookup* coverLookup, Rng& rng) const;
-  bool survives(Path& path, const Uncovered& uncovered, const Bsdf& bsdf) const;
+  bool passesRoulette(Path& path, const Uncovered& uncovered, const Bsdf& bsdf) const;
   void shade(Path& path, const Uncovered& uncovered, const Bsdf& bsdf) const;
   bool extend(Path& path, const Bsdf& bsdf) const;
 

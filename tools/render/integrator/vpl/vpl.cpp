@@ -67,8 +67,8 @@ struct Parts {
   SampleAllocation allocation = {};
 };
 
-// Counts the pairs whose light is sampled, after the gather's own counters. The compensations that
-// take such light have none.
+// Fills the counter of sampled pairs, which follows the gather's own. Compensations that allow such
+// light have no counters, so the places do not collide.
 TileGatherFn countingSampledPairs(TileGatherFn gather, size_t counter) {
   return [gather = std::move(gather), counter](const TileReceivers& tile, std::span<Gathered> out) {
     gather(tile, out);

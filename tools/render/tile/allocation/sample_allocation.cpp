@@ -28,24 +28,29 @@ PilotTile samplePilot(const Scene& scene, const PixelFilter& filter, const Tiles
                       size_t index, uint64_t key, uint64_t spp, Only only,
                       const std::function<double(const TileSamples&)>& render) {
   const Tile tile = tiles.at(index);
-  // The pilot's samples have negative filter weights as often as the image's.
+  // The pilot's samples lie in negative lobes of the filter as often as the image's, but have no
+  // weights: a fixed number of an image's samples has negative ones, which cancel.
   const auto all = static_cast<uint32_t>(std::clamp<uint64_t>(spp, kPilotSlots, 64));
   const SampleRange range{0, kPilotSlots, all, kPilotSlots};
   std::vector<CameraSample> samples;
   for (uint32_t s = 0; s < kPilotSlots; ++s) {
-    for (uint32_t p = 0; p < tile.pixels(); ++p)
+    for (uint32_t p = 0; p < tile.pixels(); ++p) {
       samples.push_back(makeSample(scene, filter, key, range, tile.x(p), tile.y(p), s));
+      samples.back().weight = 1.0f;
+    }
   }
+  TileSamples pilot{{tile.pixels(), tile.width(), tile.x0, tile.y0, 0, all,
+                     random64(key, index, kDimPilotKey), 0},
+                    samples};
+  pilot.weighted = false;
   PilotTile out;
-  out.cost = render({{tile.pixels(), tile.width(), tile.x0, tile.y0, 0, all,
-                      random64(key, index, kDimPilotKey), 0},
-                     samples});
+  out.cost = render(pilot);
   for (uint32_t p = 0; p < tile.pixels(); ++p) {
     Vec3 sum;
     double squares = 0.0;
     for (uint32_t s = 0; s < kPilotSlots; ++s) {
       const CameraSample& sample = samples[size_t{s} * tile.pixels() + p];
-      const Vec3 light = unweighted(shownRadiance(sample.radiance, only), sample.weight);
+      const Vec3 light = finiteOrBlack(shownRadiance(sample.radiance, only));
       sum += light;
       squares += squared(light);
     }
@@ -109,10 +114,15 @@ SampleAllocation findAllocation(const Scene& scene, const PixelFilter& filter, u
     if (progress) progress(1);
   });
   SampleAllocation out;
+  // The median of the tiles that have light: half of the film may be a black background.
   std::vector<double> lights;
-  for (const PilotTile& tile : pilot) lights.push_back(squared(tile.light));
-  std::ranges::nth_element(lights, lights.begin() + static_cast<ptrdiff_t>(count / 2));
-  out.medianLight = lights[count / 2];
+  for (const PilotTile& tile : pilot) {
+    if (squared(tile.light) > 0.0) lights.push_back(squared(tile.light));
+  }
+  if (lights.empty()) return {};
+  const auto middle = lights.begin() + static_cast<ptrdiff_t>(lights.size() / 2);
+  std::ranges::nth_element(lights, middle);
+  out.medianLight = *middle;
   out.floorLight = kFloor * kFloor * out.medianLight;
   // The mean of standard deviations, unlike that of variances, is not dominated by a tile that
   // stays noisy with any number of samples.

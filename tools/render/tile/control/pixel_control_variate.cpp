@@ -120,7 +120,7 @@ void PixelControlVariate::apply(const TileSamples& tile,
     predictions[i] = predicted(paths[i]);
     const CameraSample& sample = tile.samples[i];
     groups[i % tile.pixels / side].add(
-        double{mean(unweighted(sample.radiance.indirect, sample.weight))},
+        double{mean(unweightedIndirect(sample.radiance, sample.weight))},
         double{mean(unweighted(predictions[i], sample.weight))});
   }
   std::vector<Variate> variates(tile.pixels);

@@ -20,8 +20,8 @@ class PixelControlVariate {
   //
   //   beta (mean prediction over further rays - prediction for the sample),
   //
-  // whose expectation is 0. beta, the regression of light on prediction, comes from other pixels of
-  // the tile.
+  // whose expectation is 0 if beta is independent of the sample. beta, the regression of light on
+  // prediction, comes from other pixels of the tile; with --reuse it is not quite independent.
   void apply(const TileSamples& tile, std::span<const SpecularPath> paths) const;
 
  private:

@@ -39,8 +39,8 @@ class PixelRays {
     for (unsigned k = 0; k < rays; ++k) {
       const uint64_t index = uint64_t{sampleIndex} * rays + k;
       Rng rng = Rng::stratified(key, static_cast<uint32_t>(index));
-      const PixelFilter::Sample at =
-          filter_.sample(rng.nextPoint(), {index, uint64_t{tile.samplesPerPixel} * rays, key});
+      const PixelFilter::Sample at = filter_.sample(
+          rng.nextPoint(), {index, uint64_t{tile.samplesPerPixel} * rays, key, tile.weighted});
       RadianceSample sample;
       const SpecularPath path =
           traceCameraPath(accel_, lights_, x, y, at, rng, sample, specularLights, groups);

@@ -153,7 +153,7 @@ Indirect indirectOf(const TileSamples& tile, const PixelFilter& filter) {
     double squares = 0.0;
     for (size_t s = 0; s < perPixel; ++s) {
       const CameraSample& sample = tile.samples[s * tile.pixels + p];
-      const Vec3 v = unweighted(sample.radiance.indirect, sample.weight);
+      const Vec3 v = unweightedIndirect(sample.radiance, sample.weight);
       sum += v, squares += squared(v);
     }
     out.light += sum * (1.0f / static_cast<float>(tile.samples.size()));
@@ -162,7 +162,7 @@ Indirect indirectOf(const TileSamples& tile, const PixelFilter& filter) {
     } else {  // from the difference to the next pixel of the row
       const uint32_t x = p % tile.width, other = x + 1 < tile.width ? p + 1 : p - std::min(x, 1u);
       const CameraSample& next = tile.samples[other];
-      out.variance += 0.5 * squared(sum - unweighted(next.radiance.indirect, next.weight));
+      out.variance += 0.5 * squared(sum - unweightedIndirect(next.radiance, next.weight));
     }
   }
   out.variance = std::max(0.0, double{filter.squaredWeight()} * out.variance / tile.pixels);
@@ -201,7 +201,7 @@ void DirectSamples::add(const TileSamples& tile, uint32_t pixel, const Rays& ray
   const RandomNumbers numbers(
       random64(tile.key, uint64_t{pixel} << 32 | tile.firstSample, kDimDirectSamples));
   uint32_t index = out.count * static_cast<uint32_t>(out.sums.size());
-  PixelFilter::Turn turn{0, uint64_t{count} * out.sums.size(), numbers.path};
+  PixelFilter::Turn turn{0, uint64_t{count} * out.sums.size(), numbers.path, tile.weighted};
   for (size_t s = 0; s < out.sums.size(); ++s) {
     for (unsigned k = 0; k < count; ++k) {
       RadianceSample* layers =
@@ -226,6 +226,8 @@ double DirectSamples::render(const TileSamples& tile, std::span<const SpecularPa
       count_ > 0 ? count_ : countFor(tile, filter_, pilot, costOfOne, cost, allocation);
   const size_t perPixel = tile.samples.size() / tile.pixels;
   const bool allocated = count_ == 0 && allocation.marginalCost > 0.0;
+  // A variance takes two samples of a pixel.
+  const unsigned first = perPixel == 1 ? std::min(count, 2u) : (count + 1) / 2;
   std::vector<Pixel> pixels(tile.pixels);
   std::vector<PixelMoments> moments(tile.pixels);
   for (uint32_t p = 0; p < tile.pixels; ++p) {
@@ -233,15 +235,19 @@ double DirectSamples::render(const TileSamples& tile, std::span<const SpecularPa
     pixels[p].lit.resize(perPixel * tile.groups);
     for (size_t s = 0; s < perPixel; ++s) {
       const size_t i = s * tile.pixels + p;
-      pixels[p].sums[s] = {paths[i].firstSegmentEmission,
-                           paths[i].firstSegmentEmission + paths[i].lightOverSpecular,
-                           {},
-                           {}};
       const CameraSample& sample = tile.samples[i];
-      moments[p].light += unweighted(sample.radiance.indirect, sample.weight) *
+      if (countsCameraPaths()) {
+        pixels[p].sums[s] = {paths[i].firstSegmentEmission,
+                             paths[i].firstSegmentEmission + paths[i].lightOverSpecular,
+                             {},
+                             {}};
+      } else {
+        sample.groups.clearDirect();
+      }
+      moments[p].light += unweightedIndirect(sample.radiance, sample.weight) *
                           (1.0f / static_cast<float>(perPixel));
     }
-    add(tile, p, rays, allocated ? (count + 1) / 2 : count, pixels[p], moments[p]);
+    add(tile, p, rays, allocated ? first : count, pixels[p], moments[p]);
     moments[p].light += moments[p].sum * static_cast<float>(1.0 / moments[p].count);
   }
   if (allocated) addMore(tile, rays, costOfOne, allocation, moments, pixels);
@@ -266,11 +272,10 @@ void DirectSamples::addMore(const TileSamples& tile, const Rays& rays, double co
   }
 }
 
-// Stores means over the samples of a pixel. Its camera samples count among the rays that may hit
-// emission, unless they have no rays.
+// Stores means over the samples of a pixel.
 void DirectSamples::store(const TileSamples& tile, uint32_t pixel, const LearnedStrata* strata,
                           const Pixel& from) const {
-  const unsigned cameraRays = from.count + (alone_ ? 0 : 1);
+  const unsigned cameraRays = from.count + (countsCameraPaths() ? 1 : 0);
   for (size_t s = 0; s < from.sums.size(); ++s) {
     const Light& sum = from.sums[s];
     RadianceSample& out = tile.samples[s * tile.pixels + pixel].radiance;

@@ -35,14 +35,17 @@ class DirectSamples {
   };
   // `strata`: the tile's learned distribution of lights; may be null.
   Pilot pilot(const TileLayout& tile, const LearnedStrata* strata) const;
-  // Sets the direct light of the tile's camera samples. `paths`: their camera paths, whose emission
-  // is included. `cost`: cost of a sample without its direct light. Returns the cost of a sample's
-  // direct samples.
+  // Sets the direct light of the tile's camera samples. `paths`: their camera paths. `cost`: cost
+  // of a sample without its direct light. Returns the cost of a sample's direct samples.
   double render(const TileSamples& tile, std::span<const SpecularPath> paths,
                 const LearnedStrata* strata, const Pilot& pilot, double cost,
                 const SampleAllocation& allocation) const;
 
  private:
+  // Whether emission that the camera samples' own paths meet counts as that of one more ray. Where
+  // a tile chooses the number of direct samples, these paths decide on it by their indirect light:
+  // a path that ends on a lamp has none. Its emission would get a weight that depends on it.
+  bool countsCameraPaths() const { return count_ > 0 && !alone_; }
   // The direct light of a sample, or a sum over samples.
   struct Light {
     Vec3 emission;  // directly visible emission
