@@ -28,7 +28,7 @@ class Counts:
     pixels: float = 0
     spp: float = 0
     shards: int = 1  # parts of the stage, of which a task does one and a merge reads all
-    threads: int = 1  # of a task
+    threads: int = 1  # threads of a task
 
     @property
     def share(self) -> float:

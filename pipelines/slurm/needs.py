@@ -86,8 +86,8 @@ class Needs:
             self.whole = cost.Counts(
                 seen["triangles"], candidates, vpls, photons, pixels_of(seen, o), spp
             )
-        counts = cost.with_shards(self.whole, stage, self.options.shards)
-        return self.model.predict(stage, figure, dataclasses.replace(counts, threads=cores))
+        shared = cost.with_shards(self.whole, stage, self.options.shards)
+        return self.model.predict(stage, figure, dataclasses.replace(shared, threads=cores))
 
     def memory(self, stage: str, cores: int) -> str:
         """Memory in the notation of sbatch --mem."""

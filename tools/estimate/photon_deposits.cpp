@@ -143,8 +143,7 @@ PhotonSums tracePhotons(const EstimateInputs& in, const PhotonRun& run, const De
   for (size_t range = 0; range < done.size(); ++range)
     if (done[range] == 1 && controls.shard.has(range)) doneBefore += photonsOf(range);
   if (progress && doneBefore > 0) progress(doneBefore);
-  const auto soFar = [&] {
-    PhotonSums total = before;
+  const auto withThreads = [&](PhotonSums total) {
     for (const PhotonSums& s : perThread) total.add(s);
     return total;
   };
@@ -155,9 +154,8 @@ PhotonSums tracePhotons(const EstimateInputs& in, const PhotonRun& run, const De
         trace(begin, begin + count, perThread.local());
         if (progress) progress(count);
       },
-      [&] { return encode(done, soFar()); });
-  PhotonSums sums = std::move(before);
-  for (const PhotonSums& s : perThread) sums.add(s);
+      [&] { return encode(done, withThreads(before)); });
+  PhotonSums sums = withThreads(std::move(before));
   if (controls.sink) {
     controls.sink->sums(kPhotonWork, integersOf(sums));
     giveRecord(*controls.sink, kPhotonPointsWork, controls.shard.first, sums.points.winners());

@@ -1,10 +1,16 @@
 // The light tree, and VPLs sampled from it.
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
+#include <fstream>
+
+#include "core/errors.h"
 #include "core/random_streams.h"
 #include "tests/support/gather_checks.h"
 #include "tests/support/gather_of.h"
 #include "tests/support/pipeline.h"
+#include "tests/support/sanitizers.h"
 #include "tools/render/gather/single_vpl.h"
 
 namespace bnvpl::test {
@@ -14,6 +20,30 @@ const GatherCase& lit() {
   static const GatherCase c("cornell/scene.toml", {40, 40}, {{"count", "2000"}},
                             {{"method", "guarded"}});
   return c;
+}
+
+TEST(LightTree, IsRefusedWhereItDoesNotFit) {
+  if (kSanitized) GTEST_SKIP() << "sanitizers reserve terabytes of addresses";
+  VplLights million;
+  million.position.resize(1000000);
+  uint64_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_AS, &before), 0);
+  rlimit tight = before;
+  tight.rlim_cur = pages * static_cast<uint64_t>(::sysconf(_SC_PAGESIZE)) + (uint64_t{100} << 20);
+  ASSERT_EQ(::setrlimit(RLIMIT_AS, &tight), 0);
+  std::string message;
+  try {
+    buildLightTree(million, 1);
+  } catch (const MemoryError& e) {
+    message = e.what();
+  }
+  ::setrlimit(RLIMIT_AS, &before);
+  EXPECT_NE(message.find("the light tree of 1000000 emission points needs about"),
+            std::string::npos)
+      << message;
+  EXPECT_NE(message.find("--emit-points"), std::string::npos) << message;
 }
 
 TEST(LightTree, EveryNodeHoldsItsLights) {

@@ -61,10 +61,10 @@ double meanSample(const std::vector<PilotEstimate>& found) {
 
 // Statistics of a VPL, pooled over those around it.
 struct VplStatistics {
-  double photonVariance = 0.0,
-         pointVariance = 0.0;  // of one photon's deposit, and of one point, W^2
-  double flux = 0.0;           // W, without onlyFlux
-  double pointCost = 0.0;      // rays
+  double photonVariance = 0.0;  // variance of one photon's deposit, W^2
+  double pointVariance = 0.0;   // variance of one point, W^2
+  double flux = 0.0;            // W, without onlyFlux
+  double pointCost = 0.0;       // rays
   double startDensity = 1.0;
   double onlyFlux = 0.0, onlyVariance = 0.0;  // light that only photons find: W, and W^2 a photon
   double allFlux() const { return flux + onlyFlux; }
