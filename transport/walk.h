@@ -43,7 +43,7 @@ inline bool sampleNextRay(const Accelerator& accel, const Bsdf& bsdf, LobeGroup 
 }
 
 // Probability of going on by which Russian roulette follows the weight of a scattered ray.
-inline float survivalProbability(const BsdfSample& sample) {
+inline float rouletteSurvival(const BsdfSample& sample) {
   return std::min(1.0f, maxComponent(sample.weight));
 }
 

@@ -36,6 +36,12 @@ TEST(WinsorizedMean, AFewHugeValuesDecideNothing) {
   EXPECT_NEAR(winsorizedMean(values), 1.3, 1e-3);
 }
 
+TEST(WinsorizedMean, OfAFewLitPixelsBeforeAVoidIsNotBlack) {
+  std::vector<float> values(1000, 0.0f);
+  values[7] = 2.0f, values[8] = NAN;
+  EXPECT_NEAR(winsorizedMean(values), 2.0 / 999.0, 1e-9);
+}
+
 using Warp = std::function<Vec3(float, float)>;
 using Density = std::function<double(double)>;
 

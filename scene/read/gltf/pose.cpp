@@ -30,13 +30,13 @@ std::vector<Affine> jointsOf(const GltfModel& model, size_t number,
   if (!inverses.empty() && inverses.size() < 16 * skin.joints.size())
     model.fail(gltfPointer("skins", number),
                "has fewer inverse bind matrices than joints; export the file again");
+  std::vector<const GltfPlacement*> ofNode(model.parts().nodes.size());
+  for (const GltfPlacement& p : placed) ofNode[p.node] = &p;
   std::vector<Affine> out;
   for (size_t i = 0; i < skin.joints.size(); ++i) {
-    const auto node = static_cast<size_t>(skin.joints[i]);
-    const auto at = std::find_if(placed.begin(), placed.end(),
-                                 [&](const GltfPlacement& p) { return p.node == node; });
-    if (at == placed.end()) model.warn("a skin's joint stands in no scene; it counts as unmoved");
-    const Affine world = at == placed.end() ? Affine() : at->world;
+    const GltfPlacement* at = ofNode[static_cast<size_t>(skin.joints[i])];
+    if (!at) model.warn("a skin's joint stands in no scene; it counts as unmoved");
+    const Affine world = at ? at->world : Affine();
     out.push_back(inverses.empty() ? world
                                    : world * fromColumns(std::span(inverses).subspan(16 * i, 16)));
   }

@@ -285,6 +285,23 @@ TEST(Passes, EndByTimeErrorOrNumber) {
   EXPECT_NEAR(double(fine.passes) / double(coarse.passes), 4.0, 0.8);
 }
 
+// Less than a hundredth of the film is lit, as by a small object before a void.
+TEST(Passes, OfAFilmThatIsNearlyBlackDoNotEndAtOnce) {
+  const RenderedFilm film(32, 32);
+  const Integrator noise{[](const TileSamples& tile) {
+    for (size_t k = 0; k < tile.samples.size(); ++k) {
+      const bool lit = tile.x == 0 && tile.y == 0 && k % tile.pixels < 5;
+      CameraSample& s = tile.samples[k];
+      s.radiance.direct = Vec3(lit ? s.rng.next() : 0.0f);
+    }
+  }};
+  Made m;
+  renderPasses(film.scene, noise, {}, {.error = 0.01}, m.stats, m.passes);
+  EXPECT_EQ(m.passes.endedBy, "error");
+  EXPECT_GT(m.passes.error, 0.005);
+  EXPECT_GT(m.passes.passes, 2 * kMinPasses);
+}
+
 TEST(Passes, SppLimitsTheirNumber) {
   EXPECT_FALSE(budgetOf(resolveRender({})).has_value());
   EXPECT_EQ(resolveRender({})[kSppOption], 16u);

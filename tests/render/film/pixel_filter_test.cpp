@@ -156,6 +156,24 @@ TEST(PixelFilter, FirstHitsAcrossAnEdgeAreTheSameInEveryRow) {
   }
 }
 
+// Light over a transparent film is premultiplied by its alpha, also in negative lobes.
+TEST(PixelFilter, AlphaIsTheLightOfAnEvenlyBrightSurface) {
+  const World world = shiningWall(0.0f);
+  for (const auto& [name, kind] : kFilters) {
+    const Given options{{"filter", name},
+                        {"spp", "16"},
+                        {"layers", "A"},
+                        {"fireflies", "keep"},
+                        {"only", "direct"}};
+    const Image image = renderWithout(world, "path", options).image;
+    const std::vector<float>&light = *image.find("G"), &alpha = *image.find("A");
+    for (size_t i = 0; i < light.size(); ++i) ASSERT_NEAR(light[i], 2.0f * alpha[i], 1e-5f) << name;
+    EXPECT_EQ(std::ranges::any_of(alpha, [](float a) { return a < 0.0f; }),
+              kind == FilterKind::Mitchell)
+        << name;
+  }
+}
+
 // Across an edge, pixels have the integral of the filter up to it.
 TEST(PixelFilter, AnEdgeHasTheProfileOfTheFilter) {
   const World world = shiningWall(0.0f);

@@ -75,6 +75,30 @@ TEST_F(Mtl, TransmissionIsGlass) {
   EXPECT_FLOAT_EQ(std::get<MixModel>(of(half).model).amount.value, 0.5f);
 }
 
+// Many programs write Tf 1 1 1 for opaque materials.
+TEST_F(Mtl, OfOtherProgramsIlluminationTellsWhatIsGlass) {
+  const std::string fields = "newmtl paint\nKd 0.6 0.6 0.6\nNi 1.5\nd 1\nTr 0\nPr 0.5\n";
+  const Scene solid = paint(fields + "Tf 1 1 1\nillum 2\n");
+  EXPECT_TRUE(std::holds_alternative<MetallicRoughnessModel>(of(solid).model));
+  const Scene green = paint(fields + "Tf 0.2 0.9 0.2\nillum 7\n");
+  EXPECT_EQ(std::get<DielectricModel>(of(green).model).transmission.value, Vec3(0.2f, 0.9f, 0.2f));
+  const Scene clear = paint(fields + "illum 7\n");
+  EXPECT_EQ(std::get<DielectricModel>(of(clear).model).transmission.value, Vec3(0.6f));
+}
+
+TEST_F(Mtl, OpacityIsAMaskAndSaysSo) {
+  for (const auto& [field, text] : {std::pair("d 0.3", "d: below an opacity of 0.5"),
+                                    {"d 0.6", "d: from an opacity of 0.5"},
+                                    {"Tr 0.4", "Tr: from an opacity of 0.5"}}) {
+    const Scene s = paint("newmtl paint\nKd 0.5 0.5 0.5\n" + std::string(field) + "\n");
+    EXPECT_EQ(countContaining(s.warnings, text), 1u) << field << joined(s.warnings);
+  }
+  for (const char* field : {"d 1", "d 0", "Tr 0"}) {
+    const Scene s = paint("newmtl paint\nKd 0.5 0.5 0.5\n" + std::string(field) + "\n");
+    EXPECT_EQ(countContaining(s.warnings, "opacity"), 0u) << field << joined(s.warnings);
+  }
+}
+
 TEST_F(Mtl, GlassWithoutNiRefracts) {
   const Scene smooth = paint("newmtl paint\nillum 7\n");
   EXPECT_EQ(of(smooth).phong().ior, 1.5f);

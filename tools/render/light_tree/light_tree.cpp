@@ -163,7 +163,9 @@ VplDraw LightTree::at(const LightNode& n, uint32_t place) const {
 LightTree buildLightTree(const VplLights& vpls, uint64_t seed, LightSplit by) {
   LightTree tree;
   if (vpls.size() == 0) return tree;
-  requireMemory(2.0 * sizeof(LightNode) * static_cast<double>(vpls.size()),
+  const size_t bytesPerPoint =
+      2 * (sizeof(LightNode) + vpls.groups * sizeof(Vec3)) + sizeof(uint32_t) + sizeof(double);
+  requireMemory(static_cast<double>(bytesPerPoint * vpls.size()),
                 "the light tree of " + std::to_string(vpls.size()) + " emission points",
                 "keep fewer VPLs with vpl-eliminate -n, or lower vpl-estimate --emit-points");
   tree.nodes.reserve(2 * vpls.size());
@@ -172,6 +174,7 @@ LightTree buildLightTree(const VplLights& vpls, uint64_t seed, LightSplit by) {
   tree.order = builder.takeOrder();
   sumGroups(vpls, tree);
   tree.upTo.assign(1, 0.0);
+  tree.upTo.reserve(vpls.size() + 1);
   for (const uint32_t i : tree.order) {
     tree.upTo.push_back(tree.upTo.back() + double{mean(vpls.intensity[i])});
   }

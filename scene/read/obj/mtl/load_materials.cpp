@@ -56,6 +56,13 @@ void readPhong(const tinyobj::material_t& in, const MtlKeys& keys, const MtlMaps
   if (isGlass(in.illum)) return readGlass(in, keys, ks, where, builder, p);
   readOpaque(in, keys, ks, m);
   m.opacity = std::isfinite(in.dissolve) ? static_cast<float>(in.dissolve) : 1.0f;
+  const bool stated = keys.has("d") || keys.has("Tr");  // Tr is 1 - d
+  if (stated && m.opacity > 0.0f && m.opacity < 1.0f) {
+    builder.warn(where + (keys.has("d") ? "d" : "Tr") +
+                 (m.opacity < 0.5f ? ": below an opacity of 0.5 the surface is not there"
+                                   : ": from an opacity of 0.5 on the surface is opaque") +
+                 "; for glass use illum 4 or a [[material]]");
+  }
   const float limit = maxComponent(p.diffuse + p.glossy + p.mirror);
   const bool hasMap = !in.diffuse_texname.empty() || !in.specular_texname.empty();
   if (limit > 1.0f && !hasMap) {

@@ -54,11 +54,12 @@ MetallicRoughnessModel modelOf(const tinyobj::material_t& in, const MtlKeys& key
   return m;
 }
 
-// Share of light that enters the body: Blender's transmission, or the glass of other programs.
+// Share of light that enters the body. Blender writes its transmission as Tf. Elsewhere Tf is the
+// colour that glass lets through, many programs write Tf 1 1 1 for opaque materials, and illum
+// tells which ones are glass.
 float transmissionOf(const tinyobj::material_t& in, const MtlKeys& keys) {
-  if (keys.has("Tf")) return mean(clamped(in.transmittance));
-  const bool glass = in.illum == 4 || in.illum == 6 || in.illum == 7 || in.illum == 9;
-  return glass && !keys.blender ? 1.0f : 0.0f;
+  if (keys.blender) return keys.has("Tf") ? mean(clamped(in.transmittance)) : 0.0f;
+  return in.illum == 4 || in.illum == 6 || in.illum == 7 || in.illum == 9 ? 1.0f : 0.0f;
 }
 
 // Replaces `amount` of the model by glass of the same roughness.
@@ -70,6 +71,8 @@ void addGlass(const tinyobj::material_t& in, const MtlKeys& keys, float amount,
     glass.ior = std::clamp(static_cast<float>(in.ior), 1.0f, 100.0f);
   glass.roughness = Roughness(base.roughness, Roughness::Alpha::Square);
   glass.transmission = base.baseColour;
+  if (const Vec3 tf = clamped(in.transmittance); !keys.blender && keys.has("Tf") && !isBlack(tf))
+    glass.transmission = {tf};
   if (amount >= 1.0f) {
     m.model = glass;
     return;

@@ -17,6 +17,7 @@ namespace {
 // What is known of a pixel.
 struct PixelHits {
   size_t samples = 0, hits = 0;
+  double covered = 0.0;  // sum of the filter's weights over hits, as in the pixel's light
   std::array<double, 3> position{};                    // sum over hits
   DenoiserFeatures features;                           // sum over samples
   std::vector<uint32_t> objects, materials;            // index of each hit
@@ -66,6 +67,7 @@ class FirstHits {
       SurfacePoint hit;
       if (!accel_.closestHit(sample.origin, sample.direction, hit)) continue;
       ++out.hits;
+      out.covered += double{sample.weight};
       for (size_t c = 0; c < 3; ++c)
         out.position[c] += double{hit.position[int(c)]} + scene.origin[c];
       const uint32_t object = scene.objectOf(hit.triangle, hit.instance);
@@ -85,7 +87,7 @@ class FirstHits {
       case FirstHit::None:
         return;
       case FirstHit::Coverage:
-        return add(static_cast<double>(pixel.hits) * perSample);
+        return add(pixel.covered * perSample);
       case FirstHit::Position:
         for (const double sum : pixel.position)
           add(pixel.hits > 0 ? sum / static_cast<double>(pixel.hits) : 0.0);

@@ -3,7 +3,8 @@
 //
 // They come from camera rays of their own, which are the rays of the beauty's samples unless the
 // image is rendered by passes or has more than kMaxFirstHitSamples a pixel. All of these layers of
-// a pixel share the rays, so that coverages add up to A.
+// a pixel share the rays, so that coverages add up to A where the filter has no negative lobes: A
+// has the filter's weights, as the light that it goes with.
 #pragma once
 
 #include <functional>

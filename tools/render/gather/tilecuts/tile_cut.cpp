@@ -145,7 +145,9 @@ TileCut chooseTileCut(const Accelerator& accel, const VplLights& vpls, const Lig
   const auto allowedVariance =
       static_cast<float>(std::max(maxVarianceSum, minVarianceToRefine) / double{kSampleReceivers});
   const float darkest = *std::min_element(light.begin(), light.end());
-  cut.allowedDeviation = std::sqrt(allowedVariance) * darkest;
+  // Without light at the sample receivers there is nothing to compare with: relative to 0 every
+  // packet would open all clusters.
+  cut.allowedDeviation = darkest > 0.0f ? std::sqrt(allowedVariance) * darkest : INFINITY;
   // Tracing a ray of contribution c with probability q adds the variance c^2 (1/q - 1). At the
   // marginal cost m, q = c / sqrt(m) is efficient.
   cut.negligible =

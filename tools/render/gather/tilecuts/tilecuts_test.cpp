@@ -194,6 +194,39 @@ TEST(TileCuts, NoiseIsFineGrain) {
   EXPECT_LT(ofMeans / ofPixels, 0.4);  // 1/4 for independent errors
 }
 
+// A tile of a plane that is covered with VPLs, which light it nowhere, and a single pixel above it:
+// the light of the sample receivers, 0, is no scale for errors.
+TEST(TileCuts, ReceiversWithoutLightDoNotOpenEveryCluster) {
+  const World& world = cornell().world;
+  SurfacePoint at;
+  ASSERT_TRUE(world.accel.closestHit(world.scene.camera.position, world.scene.camera.forward, at));
+  VplLights vpls = makeVplLights(cornell().lit, world.accel, 1.0f);
+  Rng rng(5, 0);
+  for (size_t i = 0; i < vpls.size(); ++i) {
+    vpls.position[i] = {0.05f + 0.45f * rng.next(), 0.4f, 0.05f + 0.45f * rng.next()};
+    vpls.normal[i] = {0, 1, 0};
+  }
+  std::vector<SurfacePoint> points(64, at);
+  for (SurfacePoint& p : points) {
+    const bool last = &p == &points.back();
+    p.position = {0.05f + 0.45f * rng.next(), last ? 0.5f : 0.4f, 0.05f + 0.45f * rng.next()};
+    p.ns = p.ng = p.wo = {0, last ? -1.0f : 1.0f, 0};
+  }
+  std::vector<Bsdf> bsdfs;
+  for (const SurfacePoint& p : points) bsdfs.emplace_back(world.scene, p);
+  std::vector<const Bsdf*> pointers;
+  for (const Bsdf& b : bsdfs) pointers.push_back(&b);
+  TileReceivers tile;
+  tile.pixels = 64, tile.width = 8;
+  tile.bsdf = pointers;
+  const std::vector<Vec3> weights(64, Vec3(1.0f));
+  tile.weight = weights;
+  std::vector<Gathered> out(64);
+  GatherOf(world, vpls, {{"gather", "tilecuts"}}).gather.tile(tile, out);
+  EXPECT_GT(mean(out[63].radiance), 0.0f);
+  EXPECT_LT(out[63].cut, vpls.size() / 10);
+}
+
 // VPLs in the horizon of the shading normal. The cosine rounds to 0 in one formula and to a
 // positive number in another.
 TEST(TileCuts, GlossyPointsHaveFiniteLightFromTheirHorizon) {

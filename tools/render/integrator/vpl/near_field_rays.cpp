@@ -245,7 +245,7 @@ bool NearFieldRays::extend(Path& path, const Bsdf& bsdf) const {
     return false;
   }
   if (path.segments >= kSureSegments) {
-    const float survival = survivalProbability(sample);
+    const float survival = rouletteSurvival(sample);
     if (!(path.rng.next() < survival)) return false;
     sample.weight *= 1.0f / survival;
   }

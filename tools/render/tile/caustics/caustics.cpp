@@ -217,7 +217,7 @@ void Caustics::trace(const Photon& photon, Rng& rng, Splats& out) const {
       onlyPhotons = !photon.hittable && sample.pdf == 0.0f;  // by a perfect lobe
       continue;
     }
-    const float survive = survivalProbability(sample);
+    const float survive = rouletteSurvival(sample);
     if (rng.next() >= survive) return;
     flux *= 1.0f / survive;
   }
@@ -229,7 +229,7 @@ void Caustics::followBounces(const Bsdf& bsdf, Vec3 flux, const Photon& photon, 
   Ray next;
   if (!sampleNextRay(accel_, bsdf, LobeGroup::Rough, TransportMode::Importance, rng, sample, next))
     return;
-  const float survive = survivalProbability(sample);
+  const float survive = rouletteSurvival(sample);
   if (rng.next() >= survive) return;
   PhotonWalk walk({next.origin, next.direction, flux * sample.weight * (1.0f / survive)}, bounces_,
                   rng);
