@@ -136,7 +136,8 @@ TEST_F(Doctor, KnowsTheRatesOfTheCostModelAndTheCountsOfThePipeline) {
   EXPECT_EQ(rates.at("estimate").at("cpu_s").at("photons"), kSecondsPerPhoton);
   const auto render = rates.at("render").at("cpu_s");
   EXPECT_EQ(render.at("samples log2(VPLs)"), kSecondsPerSampleLog2Vpls);
-  EXPECT_EQ(render.at("samples sqrt(triangles)"), kSecondsPerSampleSqrtTriangles);
+  EXPECT_EQ(render.at("samples"), kSecondsPerSample);
+  EXPECT_EQ(render.at("samples log2(triangles)"), kSecondsPerSampleLog2Triangles);
   const std::string presets = readAll(BNVPL_SOURCE "/pipelines/quality.mk");
   EXPECT_TRUE(contains(presets, "VPLS.default       := 3k"));
   EXPECT_EQ(kUsualVpls, 3000.0);

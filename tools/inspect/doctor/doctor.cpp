@@ -136,11 +136,12 @@ void describeCost(const Accelerator& accel, Json& json) {
   const Scene& scene = accel.scene();
   const double pixels = double{1} * scene.film.width * scene.film.height,
                samples = pixels * kUsualSpp,
-               root = std::sqrt(static_cast<double>(scene.triangles.size()));
-  const double cpuS = kUsualPhotons * kSecondsPerPhoton +
-                      samples * (kSecondsPerSampleLog2Vpls * std::log2(kUsualVpls) +
-                                 kSecondsPerSampleSqrtTriangles * root);
-  constexpr double kBytesPerPixel = 300.0, kBytesPerTriangle = 190.0, kBytesPerVpl = 2700.0;
+               triangles = std::max(2.0, static_cast<double>(scene.triangles.size()));
+  const double cpuS =
+      kUsualPhotons * kSecondsPerPhoton +
+      samples * (kSecondsPerSample + kSecondsPerSampleLog2Vpls * std::log2(kUsualVpls) +
+                 kSecondsPerSampleLog2Triangles * std::log2(triangles));
+  constexpr double kBytesPerPixel = 300.0, kBytesPerTriangle = 190.0, kBytesPerVpl = 4000.0;
   const double bytes = 64e6 + pixels * kBytesPerPixel + kUsualVpls * kBytesPerVpl +
                        static_cast<double>(scene.triangles.size()) * kBytesPerTriangle;
   json["cost"] = {{"cpu_s", cpuS}, {"memory_MiB", bytes / 1048576.0}};

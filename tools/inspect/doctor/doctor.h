@@ -12,8 +12,9 @@ namespace bnvpl {
 // Counts of the pipeline by default: pipelines/quality.mk.
 inline constexpr double kUsualVpls = 3000.0, kUsualPhotons = 10e6, kUsualSpp = 16.0;
 // Rates of pipelines/cost_model.json, CPU seconds on one core.
-inline constexpr double kSecondsPerPhoton = 1.389e-06, kSecondsPerSampleLog2Vpls = 1.389e-06,
-                        kSecondsPerSampleSqrtTriangles = 1.381e-08;
+inline constexpr double kSecondsPerPhoton = 1.994e-06, kSecondsPerSample = 2.231e-06,
+                        kSecondsPerSampleLog2Vpls = 5.796e-07,
+                        kSecondsPerSampleLog2Triangles = 1.373e-06;
 
 // {"lights": [{"light", "power_W", "shines", "meets_at_once", "leaves", "reaches_view"}],
 //  "view": {"depth", "open", "behind", "inside"}, "vpls": {...}, "cost": {...},
