@@ -1,7 +1,8 @@
-"""Lists the rooms that rooms.py measures, and says what of their files is missing."""
+"""Lists the rooms that rooms.py and run_means.py measure; says what of their files is missing."""
 
 import os
 import re
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -59,3 +60,18 @@ def missing(scene: gallery.Scene) -> str:
         if name not in os.environ
     ]
     return f"{', '.join(unset)} is not set" if unset else ""
+
+
+def chosen(names: list[str], program: str) -> list[gallery.Scene]:
+    """The rooms of these names, or all without names. Says which of them lack files."""
+    if unknown := set(names) - {scene.id for scene in SCENES}:
+        sys.exit(f"{program}: no room is named {', '.join(sorted(unknown))}; --help lists them")
+    rooms = []
+    for scene in SCENES:
+        if names and scene.id not in names:
+            continue
+        if lacks := missing(scene):
+            print(f"{program}: {scene.title} is left out: {lacks}", file=sys.stderr)
+        else:
+            rooms.append(scene)
+    return rooms

@@ -25,7 +25,7 @@ from bnvpl_eval import settings
 from bnvpl_eval.runner import Runner
 from evaluate import beginning
 from room_images import VARIANTS, Rooms
-from room_list import SCENES, missing
+from room_list import SCENES, chosen
 
 
 def parse_arguments() -> argparse.Namespace:
@@ -105,14 +105,7 @@ def main() -> int:
         "reference": f"2 x {arguments.reference_spp} spp, {arguments.truth}",
         "path_length": arguments.path_length,
     }
-    if unknown := set(arguments.rooms or []) - {scene.id for scene in SCENES}:
-        sys.exit(f"rooms: no room is named {', '.join(sorted(unknown))}; --help lists them")
-    for scene in SCENES:
-        if arguments.rooms and scene.id not in arguments.rooms:
-            continue
-        if lacks := missing(scene):
-            print(f"rooms: {scene.title} is left out: {lacks}", file=sys.stderr)
-            continue
+    for scene in chosen(arguments.rooms, "rooms"):
         if arguments.references_only:
             rooms.halves(scene)
             continue

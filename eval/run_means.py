@@ -5,8 +5,9 @@
     export SPONZA_DIR=/folder VEACH_AJAR_DIR=/folder SUN_ROOM_DIR=/folder
     eval/run_means.py --runs 10 cornell veach-door
 
-VPLs are placed and eliminated once with the options of --preset; each run estimates and renders them with a
-seed of its own. Means are those of indirect light over the film. Rooms without files are left out.
+VPLs are placed and eliminated once with the options of --preset; each run estimates and renders
+them with a seed of its own. Means are those of indirect light over the film. Rooms without files
+are left out.
 """
 
 import argparse
@@ -20,7 +21,7 @@ from bnvpl_eval.runner import Runner
 from evaluate import beginning
 from gallery import Scene
 from room_images import SETTINGS
-from room_list import SCENES, missing
+from room_list import SCENES, chosen
 
 
 def parse_arguments() -> argparse.Namespace:
@@ -63,19 +64,13 @@ def means(tools: Runner, scene: Scene, given: argparse.Namespace) -> tuple[list[
 
 def main() -> int:
     given = parse_arguments()
-    if unknown := set(given.rooms) - {scene.id for scene in SCENES}:
-        sys.exit(f"run_means: no room is named {', '.join(sorted(unknown))}; --help lists them")
+    rooms = chosen(given.rooms, "run_means")
     if given.runs < 2 or given.guided_runs < 2:
         sys.exit("run_means: a deviation needs two runs; raise --runs and --guided-runs")
     tools = Runner(given.bin.resolve(), given.cache.resolve(), True, beginning(None))
     print("| room | mean | least and largest | deviation of a run | standard error of guided |")
     print("|---|---|---|---|---|", flush=True)
-    for scene in SCENES:
-        if given.rooms and scene.id not in given.rooms:
-            continue
-        if lacks := missing(scene):
-            print(f"run_means: {scene.title} is left out: {lacks}", file=sys.stderr)
-            continue
+    for scene in rooms:
         ours, guided = (np.array(found) for found in means(tools, scene, given))
         ratio = ours / guided.mean()
         error = guided.std(ddof=1) / guided.mean() / len(guided) ** 0.5

@@ -6,8 +6,9 @@
     eval/scaling/cost_model.py --keep F     keep measurements in F, repeat none that it has
     eval/scaling/cost_model.py --table      print the tables of README.md from cost_model.json
 
-CPU seconds are user and system time, of one thread but where a run names more. Runs are repeated two to eight times, until the
-two least agree within 4 %; the least counts. design.py lists the runs.
+CPU seconds are user and system time, of one thread but where a run names more. Runs are repeated
+two to eight times, until the two least agree within 4 %; the least counts. design.py lists the
+runs.
 """
 
 import argparse
