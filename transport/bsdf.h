@@ -36,7 +36,7 @@ struct CoatAbove {
 
 class Bsdf {
  public:
-  static constexpr size_t kMaxLobes = 8, kMaxFrames = 4;
+  static constexpr size_t kMaxFrames = 4;
 
   // Borrows `point` here and below.
   Bsdf(const Scene& scene, const SurfacePoint& point);

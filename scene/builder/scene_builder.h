@@ -285,6 +285,7 @@ class SceneBuilder {
   std::map<std::string, size_t> meshOfName_;  // indices in scene_.meshes
   // For each of scene_.materials, the number of materials that it mixes, itself included.
   std::vector<uint32_t> mixParts_;
+  std::vector<uint32_t> lobes_;  // for each of scene_.materials, the largest number of its lobes
   std::map<std::string, uint32_t> replacements_;  // numbers by name
   std::map<std::string, Emission> emissions_;     // by the name of the material
   std::set<std::string> lit_;                     // names whose emission was used

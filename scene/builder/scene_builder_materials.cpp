@@ -91,11 +91,13 @@ uint32_t SceneBuilder::addOwnMaterial(Material material) {
     }
   }
   uint32_t parts = 1;
+  uint32_t lobes = std::visit([](const auto& model) { return model.kLobes; }, material.model);
   if (const auto* mix = std::get_if<MixModel>(&material.model)) {
     for (const uint32_t part : {mix->first, mix->second}) {
       assert(part == kNone || part < scene_.materials.size());
       if (part == kNone) continue;
       parts += mixParts_[part];
+      lobes += lobes_[part];
       if (hasRelief(scene_.materials[part]) && !hasRelief(material)) {
         warn(name() + ": mix '" + material.name + "' has no relief, as '" +
              scene_.materials[part].name + "' in it has; give the mix a relief of its own");
@@ -104,7 +106,11 @@ uint32_t SceneBuilder::addOwnMaterial(Material material) {
     if (parts > kMaxLookups) {
       warn(name() + ": material '" + material.name + "' mixes too many materials; it is grey");
       material.model = DiffuseModel{};
-      parts = 1;
+      parts = lobes = 1;
+    } else if (lobes > kMaxLobes) {
+      warn(name() + ": material '" + material.name + "' mixes up to " + std::to_string(lobes) +
+           " lobes; where more than " + std::to_string(kMaxLobes) +
+           " have weight, the last are black; mix fewer materials");
     }
   }
   if (including()) {  // heights grow with what they are of
@@ -113,6 +119,7 @@ uint32_t SceneBuilder::addOwnMaterial(Material material) {
       if (relief->bumpMap != kNone && !relief->heightInTexels) relief->strength *= size;
   }
   mixParts_.push_back(parts);
+  lobes_.push_back(lobes);
   scene_.materials.push_back(std::move(material));
   return static_cast<uint32_t>(scene_.materials.size() - 1);
 }

@@ -8,6 +8,7 @@ namespace bnvpl {
 struct CoatedConductorModel {
   static constexpr const char* kName = "coated_conductor";
   static constexpr uint32_t kHashId = 6;
+  static constexpr uint32_t kLobes = 2;
   ConductorFresnel fresnel;  // relative to vacuum; the model divides by the coat's index
   Roughness roughness{Scalar(0.0f)};
   Scalar coatIor{1.5f};

@@ -8,6 +8,7 @@ namespace bnvpl {
 struct CoatedDiffuseModel {
   static constexpr const char* kName = "coated_diffuse";
   static constexpr uint32_t kHashId = 5;
+  static constexpr uint32_t kLobes = 2;
   Colour reflectance{Vec3(0.5f)};  // albedo of the base without the coat
   Scalar ior{1.5f};                // index of the coat
   Roughness roughness{Scalar(0.0f)};

@@ -8,6 +8,7 @@ namespace bnvpl {
 struct ConductorModel {
   static constexpr const char* kName = "conductor";
   static constexpr uint32_t kHashId = 3;
+  static constexpr uint32_t kLobes = 2;
   ConductorFresnel fresnel;
   Roughness roughness{Scalar(0.1f)};
   // Adds the energy that scatters more than once between microfacets (Kulla & Conty 2017). pbrt and

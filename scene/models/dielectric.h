@@ -9,6 +9,7 @@ namespace bnvpl {
 struct DielectricModel {
   static constexpr const char* kName = "dielectric";
   static constexpr uint32_t kHashId = 4;
+  static constexpr uint32_t kLobes = 1;
   Scalar ior{1.5f};  // index of the inside relative to the outside
   Roughness roughness{Scalar(0.0f)};
   Colour reflection{Vec3(1)}, transmission{Vec3(1)};  // tints; the physical value is 1

@@ -8,6 +8,7 @@ namespace bnvpl {
 struct DiffuseModel {
   static constexpr const char* kName = "diffuse";
   static constexpr uint32_t kHashId = 1;
+  static constexpr uint32_t kLobes = 1;
   Colour reflectance{Vec3(0.5f)};
 };
 

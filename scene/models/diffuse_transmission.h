@@ -9,6 +9,7 @@ namespace bnvpl {
 struct DiffuseTransmissionModel {
   static constexpr const char* kName = "diffuse_transmission";
   static constexpr uint32_t kHashId = 2;
+  static constexpr uint32_t kLobes = 2;
   Colour reflectance{Vec3(0.25f)}, transmittance{Vec3(0.25f)};
 };
 

@@ -10,6 +10,7 @@ namespace bnvpl {
 struct MetallicRoughnessModel {
   static constexpr const char* kName = "metallic_roughness";
   static constexpr uint32_t kHashId = 7;
+  static constexpr uint32_t kLobes = 4;
   Colour baseColour{Vec3(1)};
   Scalar metallic{1.0f}, roughness{1.0f};
   // Disney's anisotropy: alpha is roughness^2 / a along increasing u and roughness^2 a across it,

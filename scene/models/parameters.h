@@ -3,7 +3,8 @@
 // makes the list of them.
 //
 // A model has kName, its name in scene files, and kHashId, its number in the hash of a scene, which
-// never changes and is that of no other model.
+// never changes and is that of no other model. kLobes is the largest number of lobes that it adds
+// to a BSDF (transport/bsdf.h).
 //
 // A Colour or Scalar is a constant, times an expression over textures where `texture` is not kNone
 // (scene/textures/expression.h). A format whose textures replace the constant sets it to 1. Faces

@@ -9,6 +9,7 @@ namespace bnvpl {
 struct PhongModel {
   static constexpr const char* kName = "phong";
   static constexpr uint32_t kHashId = 0;
+  static constexpr uint32_t kLobes = 3;
   Vec3 diffuse;                // Kd
   Vec3 glossy;                 // Ks of a Phong lobe; 0 for mirror and glass
   float exponent = 10.0f;      // Ns of the Phong lobe

@@ -106,6 +106,21 @@ TEST_F(Messages, AMixThatLosesTheReliefOfAPartSaysSo) {
   expectWarning(s, "'paint' has a texture but faces without texture coordinates");
 }
 
+TEST_F(Messages, AMixOfTooManyLobesSaysSo) {
+  const std::string paint = "[[material]]\nname = \"paint\"\nmodel = \"metallic_roughness\"\n",
+                    two =
+                        "[[material]]\nname = \"two\"\nmodel = \"mix\"\n"
+                        "first = \"paint\"\nsecond = \"paint\"\n",
+                    more =
+                        "[[material]]\nname = \"more\"\nmodel = \"mix\"\n"
+                        "first = \"two\"\nsecond = \"paint\"\n";
+  const std::string warning = "lobes; where more than 8 have weight, the last are black";
+  EXPECT_EQ(countContaining(load(base_ + paint + two).warnings, warning), 0u);
+  const Scene s = load(base_ + paint + two + more);
+  EXPECT_EQ(countContaining(s.warnings, warning), 1u);
+  expectWarning(s, "material 'more' mixes up to 12 " + warning);
+}
+
 TEST_F(Messages, AnEmptyListOfInstancesIsNamed) {
   for (const char* file : {"square.obj", "inner.toml"}) {
     write("inner.toml", mesh_);
