@@ -26,6 +26,7 @@ import argparse
 import json
 import os
 import re
+import shlex
 import shutil
 import signal
 import subprocess
@@ -163,19 +164,36 @@ def same(a: str, b: str) -> bool:
     )
 
 
+def make_portable_tools(bin_folder: Path, folder: Path) -> None:
+    """Fills a folder with the tools, of which stages compute the same bytes on every processor.
+
+    Otherwise numbers of noisy images would depend on the processor by more than same() allows.
+    """
+    folder.mkdir()
+    for tool in bin_folder.glob("vpl-*"):
+        if tool.name in STAGES:
+            script = folder / tool.name
+            script.write_text(f'#!/bin/sh\nexec {shlex.quote(str(tool))} --processor any "$@"\n')
+            script.chmod(0o755)
+        else:
+            (folder / tool.name).symlink_to(tool)
+
+
 class Bench:
     def __init__(self, bin_folder: Path, folder: Path) -> None:
-        self.folder = folder
-        folder.mkdir()
+        self.folder = folder / "files"
+        self.folder.mkdir()
+        make_portable_tools(bin_folder, folder / "bin")
+        self.own_path = f"{bin_folder}:{os.environ['PATH']}"
         self.environment = dict(
-            os.environ, PATH=f"{bin_folder}:{os.environ['PATH']}", COLUMNS="100", LC_ALL="C.UTF-8"
+            os.environ,
+            PATH=f"{folder / 'bin'}:{os.environ['PATH']}",
+            COLUMNS="100",
+            LC_ALL="C.UTF-8",
         )
-        # Numbers of noisy images would depend on the processor by more than same() allows.
-        self.environment["BNVPL_EMBREE_CONFIG"] = "isa=sse2"
-        self.environment["GLIBC_TUNABLES"] = "glibc.cpu.hwcaps=-FMA,-FMA4"
         for name in "MAKEFLAGS", "MAKELEVEL", "NINJA_STATUS":
             self.environment.pop(name, None)
-        done = self.run(SETUP.format(root=ROOT, bin=bin_folder))
+        done = self.run(SETUP.format(root=ROOT, bin=folder / "bin"))
         if done.returncode:
             raise SystemExit(f"make_docs: the set-up failed: {done.stderr}")
 
@@ -197,20 +215,29 @@ class Bench:
         return folder
 
     def session(self, text: str, folder: Path) -> str:
-        """Runs the commands of a session in one shell. Returns them with their outputs."""
+        """Runs the commands of a session in one shell. Returns them with their outputs.
+
+        A session that names --processor takes the tools as they are. Others print nothing of it.
+        """
         commands = [line[2:] for line in text.splitlines() if line.startswith("$ ")]
+        own = any("--processor" in command for command in commands)
+        environment = dict(self.environment)
+        if own:
+            environment["PATH"] = self.own_path
         marker = "\x1e"
         script = "status=0\n" + "".join(
             f"printf '{marker}'; (exit $status); {{ {command}\n}} 2>&1; status=$?\n"
             for command in commands
         )
         done = subprocess.run(
-            ["bash", "-c", script], cwd=folder, env=self.environment, text=True, capture_output=True
+            ["bash", "-c", script], cwd=folder, env=environment, text=True, capture_output=True
         )
-        printed = done.stdout.split(marker)[1:]
+        printed = done.stdout
+        if not own:
+            printed = printed.replace("; for any processor", "").replace(" --processor any", "")
         return "".join(
             f"$ {command}\n{normal(output) if output.strip() else ''}"
-            for command, output in zip(commands, printed, strict=False)
+            for command, output in zip(commands, printed.split(marker)[1:], strict=False)
         )
 
 
@@ -310,7 +337,7 @@ def main() -> int:
     signal.signal(signal.SIGINT, signal.default_int_handler)
     differing = 0
     with tempfile.TemporaryDirectory(prefix="bnvpl-docs.") as folder:
-        bench = Bench(arguments.bin.resolve(), Path(folder) / "files")
+        bench = Bench(arguments.bin.resolve(), Path(folder))
 
         def renew(file: Path, old: str, new: str, what: str) -> None:
             nonlocal differing
