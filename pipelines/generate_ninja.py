@@ -18,7 +18,6 @@ its executable or its own options have changed. Paths are relative to the folder
 
 import argparse
 import pathlib
-import shlex
 
 import output_guard
 import stage_options
@@ -55,7 +54,9 @@ rule shard
 
 def arguments() -> argparse.Namespace:
     p = argparse.ArgumentParser(description="Write OUT/build.ninja for one or more scenes.")
-    p.add_argument("scenes", nargs="+", metavar="SCENE", help="the scene: .toml, .pbrt, .gltf, .glb, .obj")
+    p.add_argument(
+        "scenes", nargs="+", metavar="SCENE", help="the scene: .toml, .pbrt, .gltf, .glb, .obj"
+    )
     stage_options.add_arguments(p)
     p.add_argument(
         "--launcher",
@@ -98,7 +99,7 @@ def build(task: stages.Task, out: str, options: argparse.Namespace) -> list[str]
     rows = [f"build {' | '.join(task.outputs)}: {rule} {' '.join(task.inputs)}"]
     if task.depfile:
         rows.append(f"  dep = {task.depfile}")
-    rows.append("  cmd = " + shlex.join(command).replace("$", "$$"))
+    rows.append("  cmd = " + stage_options.shell_command(command).replace("$", "$$"))
     return rows
 
 

@@ -1,6 +1,7 @@
 """Options of the programs that list the commands of a scene: scenes, counts, views, shards."""
 
 import argparse
+import os
 import pathlib
 import re
 import shlex
@@ -13,6 +14,8 @@ HERE = pathlib.Path(__file__).resolve().parent
 BUILT = HERE.parent / "build" / "release" / "bin"
 DIVIDED = ("place", "estimate", "render")  # stages that can be divided into shards
 MAX_SHARDS = 1500  # the command of vpl-merge names all shards, and Linux limits its length
+# Linux limits an argument to 128 KiB, and `sh -c` takes a whole command as one.
+MAX_SHELL_COMMAND = 130_000
 
 
 def default_bin() -> pathlib.Path:
@@ -196,6 +199,17 @@ def words_of(text: str, option: str) -> list[str]:
         return shlex.split(text)
     except ValueError as problem:
         refuse(f"{option} {text!r}: {problem}; check its quotes")
+
+
+def shell_command(words: list[str]) -> str:
+    """The words as one command for `sh -c`. Refuses what Linux would not start."""
+    command = shlex.join(words)
+    if len(os.fsencode(command)) > MAX_SHELL_COMMAND:
+        refuse(
+            f"the command that merges the shards has {len(command)} characters, and a shell takes "
+            f"{MAX_SHELL_COMMAND}; give fewer --shards, or a shorter --out"
+        )
+    return command
 
 
 def chooses(words: list[str], method: str) -> bool:

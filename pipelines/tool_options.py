@@ -10,10 +10,11 @@ import json
 import pathlib
 import re
 import subprocess
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import stage_options
+import stages
 
 STAGES = ("place", "eliminate", "estimate", "render")
 # Options of the pipelines, and the tools' options that get their values.
@@ -86,6 +87,20 @@ class Tool:
         cure = f"did you mean {near[0]}?" if near else f"see {self.name} --help"
         return f"{name} is no option of {self.name}; {cure}"
 
+    def given(self, words: Sequence[str]) -> list[str]:
+        """Names of the options in the words of a command line, each as often as it occurs."""
+        found = []
+        left = list(words)
+        while left:
+            word = left.pop(0)
+            short = not word.startswith("--")
+            name, equals, _ = (word[:2], word[2:], "") if short else word.partition("=")
+            if option := self.options.get(name):
+                found.append(option["name"])
+                if option["kind"] != "flag" and not equals and left:
+                    left.pop(0)
+        return found
+
     def problem_of_words(self, words: list[str]) -> str:
         """What is wrong with the words of a command line; empty if nothing is."""
         left = list(words)
@@ -130,10 +145,29 @@ def _refuse_missing(tools: Mapping[str, Tool | None], options: argparse.Namespac
             )
 
 
-def check(options: argparse.Namespace, must_run: bool = True) -> None:
+def _refuse_repeated(
+    tool: Tool, stage: str, options: argparse.Namespace, more: Sequence[str]
+) -> None:
+    """Refuses flags whose options the command of the stage has already."""
+    tasks = stages.tasks_of("scene/scene.toml", options)
+    command = next(task.command for task in tasks if task.stage == stage)
+    names = tool.given([*command[1:], *more])
+    flags = stage_options.words_of(getattr(options, f"{stage}_flags"), f"--{stage}-flags")
+    for name in tool.given(flags):
+        if names.count(name) > 1 and not tool.options[f"--{name}"]["repeat"]:
+            stage_options.refuse(
+                f"--{stage}-flags: --{name} is given to {tool.name} twice; leave it out, and use "
+                "this program's own option or another --quality"
+            )
+
+
+def check(
+    options: argparse.Namespace, must_run: bool = True, runner_gives: Sequence[str] = ()
+) -> None:
     """Refuses counts, seeds, defines and flags that the tools do not take.
 
     Without `must_run`, tools that do not run here are not asked, as where only nodes have them.
+    `runner_gives` are options that whoever runs the commands adds to each.
     """
     tools = {stage: _tool(stage, options) for stage in STAGES}
     if must_run:
@@ -150,3 +184,5 @@ def check(options: argparse.Namespace, must_run: bool = True) -> None:
         words = stage_options.words_of(getattr(options, f"{stage}_flags"), f"--{stage}-flags")
         if tool and (problem := tool.problem_of_words(words)):
             stage_options.refuse(f"--{stage}-flags: {problem}")
+        if tool:
+            _refuse_repeated(tool, stage, options, runner_gives)

@@ -103,6 +103,12 @@ struct Instance {
   }
 };
 
+// A triangle and the index of its object in Scene::objectNames.
+struct ObjectTriangle {
+  Triangle triangle;
+  uint32_t object;
+};
+
 // The triangles from `firstTriangle` up to the next run are part of one object.
 struct ObjectRun {
   uint32_t firstTriangle, object;
@@ -162,6 +168,14 @@ struct Scene {
     size_t count = worldEnd() - maskedBegin;
     for (const Prototype& p : prototypes) count += p.end - p.maskedBegin;
     return count;
+  }
+  // Triangles that reach far away, as the files have them. `triangles` has the pieces into which
+  // they are cut, each of which has a vertex among the positions that the cuts have made.
+  std::vector<ObjectTriangle> cutFaces;
+  uint32_t cutsBegin = 0, cutsEnd = 0;  // range of those positions
+  bool isPiece(const Triangle& t) const {
+    return std::ranges::any_of(t.position,
+                               [&](uint32_t p) { return p >= cutsBegin && p < cutsEnd; });
   }
   std::vector<Prototype> prototypes;
   std::vector<Instance> instances;

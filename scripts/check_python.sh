@@ -40,7 +40,7 @@ check python:python/examples:python/tests python/bnvpl python/examples/*.py pyth
 check scenes scenes/generate.py scenes/generator
 check scenes/gltf-room scenes/gltf-room/*.py
 check scripts scripts/*.py
-check tests/bytes:pipelines:python tests/{bytes,formats,images,inspect,pipeline,shards}/*.py
+check tests/bytes:pipelines:python tests/{bytes,formats,images,pipeline,shards}/*.py tests/inspect/*/*.py
 check tests/cluster:pipelines:pipelines/slurm:eval/scaling tests/cluster/*.py
 check tests/faults tests/faults/*.py
 check tests/scene/blender tests/scene/blender/*.py

@@ -112,7 +112,8 @@ class BNVPL_RenderEngine(bpy.types.RenderEngine):
             lines = [[], path_command(request)]
         for command in lines[1:]:
             self._run(command, folder)
-        (folder / "render.sh").write_text(script([command for command in lines if command]))
+        text = script([command for command in lines if command], tools_folder())
+        (folder / "render.sh").write_text(text)
         (folder / "render.sh").chmod(0o755)
         self._take(depsgraph, read_exr(folder / "image.exr"), passes)
 

@@ -150,9 +150,11 @@ def make_folder(folder: Path, private: bool) -> None:
             raise FileExistsError(f"{folder / name} is not of this add-on; choose another Folder")
 
 
-def script(lines: list[list[str]]) -> str:
-    """A shell script that renders the folder again."""
+def script(lines: list[list[str]], folder: str) -> str:
+    """A shell script that renders again, by the tools in `folder` or else those on the PATH."""
     head = ["#!/bin/sh -e", MARK, 'cd "$(dirname "$0")"']
+    if folder:
+        head.append(f"PATH={shlex.quote(folder)}:$PATH")
     return "\n".join(head + [shlex.join(command) for command in lines]) + "\n"
 
 

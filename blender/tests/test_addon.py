@@ -156,7 +156,7 @@ class ToolsTest(unittest.TestCase):
                 self.assertEqual(folder.stat().st_mode & 0o777, 0o700)
                 (folder / "scene.toml").write_text(text)
                 (folder / "scene.glb").write_text("")
-                (folder / "render.sh").write_text(tools.script([["true"]]))
+                (folder / "render.sh").write_text(tools.script([["true"]], ""))
             with self.assertRaisesRegex(FileExistsError, "scene.toml is not of this add-on"):
                 tools.make_folder(folder, private=False)
             (folder / "scene.toml").unlink()
@@ -172,6 +172,16 @@ class ToolsTest(unittest.TestCase):
         ours, reference = exr_file.read_exr(path), bnvpl.read_exr(path)
         np.testing.assert_array_equal(exr_file.layer(ours, "", "RGB"), reference["RGB"])
         np.testing.assert_array_equal(exr_file.layer(ours, "A", "A")[..., 0], reference["A"])
+
+    def test_the_script_finds_the_tools_of_the_preferences(self) -> None:
+        with tempfile.TemporaryDirectory(prefix="bnvpl's tools ") as name:
+            tool, script = Path(name) / "vpl-place", Path(name) / "render.sh"
+            tool.write_text("#!/bin/sh\necho found\n")
+            script.write_text(tools.script([["vpl-place"]], name))
+            for file in (tool, script):
+                file.chmod(0o755)
+            done = subprocess.run([script], text=True, capture_output=True)
+            self.assertEqual((done.stdout, done.stderr), ("found\n", ""))
 
     def test_missing_tool(self) -> None:
         with self.assertRaisesRegex(tools.ToolError, "preferences"):

@@ -116,7 +116,7 @@ def arguments() -> argparse.Namespace:
         p.error(f"--retries {options.retries} is not 0 or more")
     stage_options.complete(options)
     stage_options.check_scene(options.scene)
-    tool_options.check(options, must_run=False)
+    tool_options.check(options, must_run=False, runner_gives=("--threads",))
     return options
 
 
@@ -150,6 +150,11 @@ def largest_index() -> int:
     shown = subprocess.run(["scontrol", "show", "config"], text=True, capture_output=True)
     found = re.search(r"^MaxArraySize\s*=\s*(\d+)", shown.stdout, re.M)
     return int(found[1]) - 1 if found else 0
+
+
+def task_of(file: pathlib.Path) -> str:
+    """The task that a record NAME.ATTEMPT.task.json is of."""
+    return file.name.removesuffix(record.SUFFIX).rpartition(".")[0]
 
 
 class Submission:
@@ -189,10 +194,16 @@ class Submission:
             )
 
     def put_aside(self, names: Collection[str]) -> None:
-        """Moves away records of tasks that this run lacks, such as those of other shard counts."""
+        """Moves away records of tasks that this run lacks, such as those of other shard counts.
+
+        Records of its own tasks that an earlier run has put aside come back.
+        """
         earlier = self.run / "earlier"
+        for file in earlier.glob(f"*{record.SUFFIX}"):
+            if task_of(file) in names:
+                file.replace(self.run / file.name)
         for file in self.run.glob(f"*{record.SUFFIX}"):
-            if file.name.removesuffix(record.SUFFIX).rpartition(".")[0] not in names:
+            if task_of(file) not in names:
                 earlier.mkdir(exist_ok=True)
                 file.replace(earlier / file.name)
 

@@ -17,6 +17,7 @@ import signal
 import subprocess
 import sys
 import time
+import urllib.parse
 from collections.abc import Iterable
 from typing import Any
 
@@ -24,7 +25,25 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 import output_guard  # noqa: E402
 import record  # noqa: E402
 
+# A record is JSON, which holds a file name that is not UTF-8 with this prefix and its bytes quoted.
+QUOTED = "quoted:"
 ASKED_TO_STOP = {128 + number for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)}
+
+
+def recorded(file: str) -> str:
+    """The name of a file as a record holds it."""
+    name = os.fsencode(file)
+    try:
+        return name.decode()
+    except UnicodeDecodeError:
+        return QUOTED + urllib.parse.quote(name)
+
+
+def file_of(name: str) -> str:
+    """The file of a recorded name."""
+    if name.startswith(QUOTED):
+        return os.fsdecode(urllib.parse.unquote_to_bytes(name.removeprefix(QUOTED)))
+    return name
 
 
 def signature(files: Iterable[str]) -> dict[str, list[int] | None]:
@@ -37,13 +56,13 @@ def signature(files: Iterable[str]) -> dict[str, list[int] | None]:
         except OSError:
             return None
 
-    return {file: of(file) for file in files}
+    return {recorded(file): of(file) for file in files}
 
 
 def dependencies(depfile: str) -> list[str]:
     """The files that a depfile names. Spaces, # and $ in it are escaped for Make."""
     try:
-        text = pathlib.Path(depfile).read_text().split(":", 1)[1]
+        text = os.fsdecode(pathlib.Path(depfile).read_bytes()).split(":", 1)[1]
     except (OSError, IndexError):
         return []
     words = re.findall(r"(?:\\.|[^\s\\])+", text.replace("\\\n", " "))
@@ -60,7 +79,8 @@ def up_to_date(folder: pathlib.Path, task: dict[str, Any]) -> bool:
             and earlier.get("exit") == 0
             and earlier.get("command") == task["command"]
             and all(
-                "made" in earlier and signature(earlier["made"][kind]) == earlier["made"][kind]
+                "made" in earlier
+                and signature(map(file_of, earlier["made"][kind])) == earlier["made"][kind]
                 for kind in ("inputs", "outputs")
             )
         ):

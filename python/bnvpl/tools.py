@@ -71,7 +71,8 @@ def _execute(
         try:
             lines = _listen(child.stderr, tool, progress)
         except BaseException:  # also of the caller's progress(), and Ctrl-C
-            child.send_signal(signal.SIGINT)  # the tool saves its checkpoint, if it has one
+            # The tool saves its checkpoint, if it has one. Background jobs may ignore SIGINT.
+            child.send_signal(signal.SIGTERM)
             for _ in child.stderr:  # its last lines would find a closed pipe, and end it
                 pass
             child.wait()

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 import re
+import signal
 import time
 import unittest
 from pathlib import Path
@@ -70,13 +71,18 @@ class Running(TestFiles):
             raise InterruptedError("enough")
 
         image = self.folder / "long.exr"
-        begin = time.monotonic()
-        with self.assertRaisesRegex(InterruptedError, "enough"):
-            bnvpl.run(
-                "vpl-render", SCENE, output=image, integrator="path", spp="1M", progress=give_up
-            )
-        self.assertLess(time.monotonic() - begin, 60)
-        self.assertEqual(list(self.folder.glob("long*")), [])
+        for in_background in (False, True):
+            before = signal.getsignal(signal.SIGINT)
+            if in_background:
+                signal.signal(signal.SIGINT, signal.SIG_IGN)
+            begin = time.monotonic()
+            with self.assertRaisesRegex(InterruptedError, "enough"):
+                bnvpl.run(
+                    "vpl-render", SCENE, output=image, integrator="path", spp="1M", progress=give_up
+                )
+            signal.signal(signal.SIGINT, before)
+            self.assertLess(time.monotonic() - begin, 60)
+            self.assertEqual(list(self.folder.glob("long*")), [])
 
     def test_a_tool_that_is_stopped_saves_its_work(self) -> None:
         def give_up(step: bnvpl.Progress) -> None:

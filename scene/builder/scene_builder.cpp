@@ -217,6 +217,15 @@ void SceneBuilder::placePrototypes() {
   open_ = kNone;
   std::vector<std::vector<Placed>> uses(prototypes_.size());
   for (const Placed& p : placed_) uses[p.prototype].push_back(p);
+  const auto unusable = [](const Placed& p) {
+    const double volume = std::fabs(p.toWorld.determinant());
+    return !(volume > 0.0) || !std::isfinite(volume);
+  };
+  for (std::vector<Placed>& several : uses) {
+    if (several.size() < 2) continue;
+    for (size_t left = std::erase_if(several, unusable); left > 0; --left)
+      warn(name() + ": an instance without volume, or beyond what floats hold, is left out");
+  }
   for (uint32_t p = 0; p < prototypes_.size(); ++p) {
     for (const KeptMesh& kept : prototypes_[p]) {
       if (uses[p].size() > 1) shareMesh(kept, p, uses[p]);
@@ -226,7 +235,8 @@ void SceneBuilder::placePrototypes() {
     }
     prototypes_[p] = {};
   }
-  std::erase_if(placed_, [&](const Placed& p) { return uses[p.prototype].size() == 1; });
+  std::erase_if(placed_,
+                [&](const Placed& p) { return uses[p.prototype].size() == 1 || unusable(p); });
 }
 
 }  // namespace bnvpl

@@ -83,10 +83,6 @@ void SceneBuilder::placeInstances() {
         instance.normalToWorld[3 * r + c] =
             static_cast<float>(instance.mirrored ? -column[r] : column[r]);
     }
-    if (!(scale > 0.0) || !std::isfinite(scale)) {
-      warn(scene_.name() + ": an instance without volume, or beyond what floats hold, is left out");
-      continue;
-    }
     scene_.instances.push_back(instance);
     scene_.instanceObjects.push_back(p.object);
   }

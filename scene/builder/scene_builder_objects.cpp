@@ -76,6 +76,11 @@ void SceneBuilder::listObjects() {
     last = surface.object;
     t.material = surface.material;
   }
+  for (ObjectTriangle& face : scene_.cutFaces) {
+    const Surface& surface = surfaces_[face.triangle.material];
+    face = {face.triangle, listed(surface.object)};
+    face.triangle.material = surface.material;
+  }
   for (uint32_t& object : scene_.instanceObjects) {
     if (object != kNone) object = listed(object);
   }

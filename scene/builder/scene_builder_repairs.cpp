@@ -34,6 +34,7 @@ void SceneBuilder::cutFarFaces() {
   size_t kept = 0, begin = 0, faces = 0;
   double furthest = 0.0;
   fs::path file;
+  scene_.cutsBegin = static_cast<uint32_t>(points_.size());
   for (Part& part : parts_) {
     for (size_t t = begin; t < part.endTriangle; ++t) {
       const Triangle face = scene_.triangles[t];
@@ -44,7 +45,9 @@ void SceneBuilder::cutFarFaces() {
       }
       if (faces++ == 0) file = part.file;
       furthest = std::max(furthest, strays_.distance(corners));
+      const size_t before = pieces.size();
       cut(face, pieces);
+      if (pieces.size() > before + 1) scene_.cutFaces.push_back({face, kNone});
       if (pieces.size() > kMaxPieces) {
         throw InputError(part.file, "too many triangles reach up to " + distanceText(furthest) +
                                         " away from the middle of the others; mend the vertices "
@@ -55,6 +58,7 @@ void SceneBuilder::cutFarFaces() {
     part.endTriangle = kept;
   }
   if (faces == 0) return;
+  scene_.cutsEnd = static_cast<uint32_t>(points_.size());
   scene_.triangles.resize(kept);
   scene_.triangles.insert(scene_.triangles.end(), pieces.begin(), pieces.end());
   parts_.push_back({file, scene_.triangles.size(), points_.size(), kNone, /*pieces=*/true});

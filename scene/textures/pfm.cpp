@@ -44,9 +44,12 @@ EnvironmentImage readPfm(const fs::path& file, std::string_view bytes) {
   image.width = takeNumber<uint32_t>(file, bytes, "width");
   image.height = takeNumber<uint32_t>(file, bytes, "height");
   const float scale = takeNumber<float>(file, bytes, "byte order");
+  const bool crlf = bytes.starts_with('\n') && bytes.data()[-1] == '\r';
   if (!(std::fabs(scale) > 0.0f) || !std::isfinite(scale))
     throw InputError(file, "is no PFM image: the scale in its header tells no byte order");
   const size_t pixels = size_t{image.width} * image.height;
+  // Some programs end the lines of the header with CR LF.
+  if (crlf && bytes.size() == pixels * channels * sizeof(float) + 1) bytes.remove_prefix(1);
   if (pixels == 0 || pixels > kMaxPfmPixels || bytes.size() < pixels * channels * sizeof(float))
     throw InputError(file, "is no whole PFM image: pixels are missing; make it again");
   image.radiance.resize(pixels);

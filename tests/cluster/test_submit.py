@@ -139,6 +139,10 @@ class SubmitTest(SlurmTest):
         self.assertIn("place-1-of-3", names)
         self.assertNotIn("place-1-of-2", names)
         self.assertTrue(self.at("run/earlier/place-1-of-2.1.task.json").exists())
+        self.submit("--shards", "2")  # whose shards are up to date
+        self.assertTrue(self.at("run/place-1-of-2.1.task.json").exists())
+        self.assertFalse(self.at("run/place-1-of-2.2.task.json").exists())
+        self.assertTrue(self.at("run/earlier/place-1-of-3.1.task.json").exists())
 
     def test_shards_of_each_stage(self) -> None:
         done = self.submit("--dry-run", "--shards", "place=2,render=5")

@@ -105,6 +105,22 @@ class TaskTest(SlurmTest):
                 done = (self.folder / f"{name}.runs").read_text()
                 self.assertEqual(done.count("run"), runs, name)
 
+    def test_an_input_whose_name_is_not_text_is_watched(self) -> None:
+        file = os.fsencode(self.folder) + b"/caf\xe9.png"
+        Path(os.fsdecode(file)).write_text("a texture\n")
+        os.utime(file, (1e9, 1e9))
+        tool = self.program(
+            "reads-latin-1",
+            f"#!/bin/sh\ncd '{self.folder}'; echo run >> runs\n"
+            f"printf 'made: {self.folder}/caf\\351.png' > made.d; touch made\n",
+        )
+        for runs in (1, 1, 2):
+            if runs == 2:
+                os.utime(file, (1e9 + 1, 1e9 + 1))
+            self.assertEqual(self.start_task(tool).wait(), 0)
+            self.assertEqual((self.folder / "runs").read_text().count("run"), runs)
+        self.assertIn("quoted:", str(self.record(1)["made"]["inputs"]))
+
     def test_whole_tasks_go_on_from_their_checkpoints(self) -> None:
         """Stops a render, one whole task of the pipeline, near its time limit."""
         arguments = [

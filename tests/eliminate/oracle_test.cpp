@@ -15,7 +15,7 @@ namespace {
 
 // The weight of every pair, in units of 2^-40, computed straight from the definition.
 std::vector<std::vector<uint64_t>> allPairs(const Cloud& cloud, const std::vector<float>& radius,
-                                            float limit) {
+                                            const PairWeight& rule) {
   const size_t n = cloud.size();
   std::vector<std::vector<uint64_t>> weight(n, std::vector<uint64_t>(n, 0));
   for (size_t i = 0; i < n; ++i) {
@@ -26,9 +26,9 @@ std::vector<std::vector<uint64_t>> allPairs(const Cloud& cloud, const std::vecto
       const bool samePlane = std::fabs(dot(offset, cloud.normal[i])) <= 0.5f * reach &&
                              std::fabs(dot(offset, cloud.normal[j])) <= 0.5f * reach;
       if (i == j || distance >= reach || !sameSide || !samePlane) continue;
-      const float x = 1.0f - std::max(distance / reach, limit);
-      const float x2 = x * x;
-      weight[i][j] = static_cast<uint64_t>(x2 * x2 * (x2 * x2) * 0x1p40f);
+      const float x = 1.0f - std::max(distance / reach, rule.limit), x2 = x * x;
+      const float pair = rule.alpha == 8.0f ? x2 * x2 * (x2 * x2) : std::pow(x, rule.alpha);
+      weight[i][j] = static_cast<uint64_t>(pair * 0x1p40f);
     }
   }
   return weight;
@@ -36,9 +36,9 @@ std::vector<std::vector<uint64_t>> allPairs(const Cloud& cloud, const std::vecto
 
 // Repeatedly removes the heaviest remaining candidate and updates the sums of the others.
 std::vector<uint32_t> greedyOracle(const Cloud& cloud, const std::vector<float>& radius,
-                                   size_t keep, float limit = 0.0f) {
+                                   size_t keep, const PairWeight& rule = {}) {
   const size_t n = cloud.size();
-  const auto weight = allPairs(cloud, radius, limit);
+  const auto weight = allPairs(cloud, radius, rule);
   std::vector<uint64_t> sum(n, 0);
   for (size_t i = 0; i < n; ++i) {
     for (size_t j = 0; j < n; ++j) sum[i] += weight[i][j];
@@ -126,9 +126,25 @@ TEST(Oracle, WeightLimitingOnlyWhereTheAreaIsKnown) {
   const KeptRows result = keepRowsOf(cloud, options);
   const std::vector<float> radius(cloud.size(), static_cast<float>(result.rMax));
   const auto limit = static_cast<float>(0.65 * (1.0 - std::pow(0.2, 1.5)));
-  EXPECT_EQ(result.rows, greedyOracle(cloud, radius, 100, limit));
+  EXPECT_EQ(result.rows, greedyOracle(cloud, radius, 100, {8.0f, limit}));
   EXPECT_EQ(keepRowsOf(cloud, with(options, {{"weight-limiting", "off"}})).rows,
-            greedyOracle(cloud, radius, 100, 0.0f));
+            greedyOracle(cloud, radius, 100));
+  const KeptRows estimated = keepRowsOf(cloud, with(keep(100), {{"weight-limiting", "on"}}));
+  EXPECT_EQ(estimated.rows,
+            greedyOracle(cloud, std::vector<float>(cloud.size(), float(estimated.rMax)), 100,
+                         {8.0f, limit}));
+}
+
+TEST(Oracle, AnyExponent) {
+  const Cloud cloud = plane(500, 1.0f, 1.0f, 8);
+  std::set<std::vector<uint32_t>> kept;
+  for (const float alpha : {1.0f, 2.5f, 8.0f, 12.0f}) {
+    const KeptRows result = keepRowsOf(cloud, with(keep(100), {{"alpha", std::to_string(alpha)}}));
+    const std::vector<float> radius(cloud.size(), static_cast<float>(result.rMax));
+    EXPECT_EQ(result.rows, greedyOracle(cloud, radius, 100, {alpha, 0.0f})) << alpha;
+    kept.insert(result.rows);
+  }
+  EXPECT_EQ(kept.size(), 4u);
 }
 
 // The candidates fill many blocks and cells of many sizes; removed nodes are dropped meanwhile.

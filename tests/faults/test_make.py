@@ -1,4 +1,4 @@
-"""Stops GNU Make while vpl-render runs with a checkpoint: its work is saved, and make resumes.
+"""Stops GNU Make while a tool runs: saved work and finished shards stay, and make resumes.
 
 One request to stop Make may reach the tool as several signals: that of the terminal, as the tool is
 in Make's process group, and the SIGTERM that Make sends to its children.
@@ -49,9 +49,11 @@ class UnderMake(Workbench):
         ):
             (self.folder / name).symlink_to(target)
 
-    def start_make(self, out: str | Path, *goals: str) -> subprocess.Popen[bytes]:
+    def start_make(
+        self, out: str | Path, *goals: str, settings: tuple[str, ...] = ()
+    ) -> subprocess.Popen[bytes]:
         return subprocess.Popen(
-            ["make", *SETTINGS, f"OUT={out}", *(f"{out}/{goal}" for goal in goals)],
+            ["make", *SETTINGS, *settings, f"OUT={out}", *(f"{out}/{goal}" for goal in goals)],
             cwd=self.folder,
             start_new_session=True,
             preexec_fn=heed_interrupts,
@@ -97,6 +99,30 @@ class UnderMake(Workbench):
                 self.make(out.name)  # there is no warning that the work begins anew
                 self.assertFalse(checkpoint.exists())
                 self.assertEqual((out / "image.exr").read_bytes(), image)
+
+    def test_a_finished_shard_stays_though_its_launcher_still_runs(self) -> None:
+        launcher = self.folder / "launch"
+        launcher.write_text('#!/bin/sh\n"$@"\nexec sleep 60\n')
+        launcher.chmod(0o755)
+        shard = self.folder / "out/shards/place-1-of-2.shard"
+        process = self.start_make(
+            "out", "shards/place-1-of-2.shard", settings=("SHARDS=2", "LAUNCHER=./launch")
+        )
+        result = self.stop(process, shard, lambda pid: os.killpg(pid, signal.SIGINT))
+        self.assertNotEqual(result.code, OK, result)
+        self.assertTrue(shard.exists(), result)
+
+    def test_all_is_made_again_where_that_is_asked(self) -> None:
+        process = self.start_make("out", settings=("--always-make", "--dry-run"))
+        result = self.finish(process, time.monotonic())
+        self.assertEqual((result.code, result.err), (OK, ""), result)
+
+    def test_a_definition_with_a_blank_is_refused(self) -> None:
+        for text in ("DIR='/data/my room'", "DIR=/data/my\\ room"):
+            process = self.start_make("out", settings=(f"DEFINES={text}",))
+            result = self.finish(process, time.monotonic())
+            self.assertNotEqual(result.code, OK, result)
+            self.assertIn("is not NAME=VALUE; blanks separate definitions", result.err)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,9 @@
-// The standard attributes of an OpenEXR header: windows, primaries and camera.
+// The standard attributes of an OpenEXR header: windows, primaries, camera and compression.
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfOutputFile.h>
+
 #include <cmath>
 
 #include "tests/formats/exr_files.h"
@@ -74,6 +79,30 @@ TEST_F(ExrStandard, OnlyTheDataWindowIsWritten) {
   for (const PixelBox bad : {PixelBox{-1, 0, 5, 5}, PixelBox{0, 0, 38, 5}, PixelBox{4, 4, 4, 9}}) {
     image.dataWindow = bad;
     EXPECT_THROW(writeExr(at("x.exr"), image, ExrPixelType::Float), OutputError);
+  }
+}
+
+TEST_F(ExrStandard, AnImageOfOneColourIsReadWhateverItsCompression) {
+  constexpr int kSide = 1024;
+  std::vector<float> black(size_t{kSide} * kSide);
+  for (const auto compression :
+       {Imf::NO_COMPRESSION, Imf::RLE_COMPRESSION, Imf::ZIP_COMPRESSION, Imf::PIZ_COMPRESSION,
+        Imf::PXR24_COMPRESSION, Imf::B44A_COMPRESSION, Imf::DWAA_COMPRESSION,
+        Imf::DWAB_COMPRESSION}) {
+    Imf::Header header(kSide, kSide);
+    header.compression() = compression;
+    Imf::FrameBuffer pixels;
+    for (const char* name : {"B", "G", "R"}) {
+      header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+      pixels.insert(name, Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(black.data()),
+                                     sizeof(float), kSide * sizeof(float)));
+    }
+    {
+      Imf::OutputFile out(at("flat.exr").c_str(), header);
+      out.setFrameBuffer(pixels);
+      out.writePixels(kSide);
+    }
+    EXPECT_EQ(*readExr(at("flat.exr")).find("G"), black) << int{compression};
   }
 }
 

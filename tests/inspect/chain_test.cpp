@@ -100,6 +100,10 @@ TEST_F(DeepCheck, CommandsAreQuotedAndExact) {
   EXPECT_EQ(commandOf(record, {"my scene.toml", "v.vpl"}, "it's.vpl"),
             "vpl-estimate 'my scene.toml' v.vpl -o 'it'\\''s.vpl' --radius 0.1 --emit-points 4 "
             "--method guarded --photons 5");
+  // A stranger's file may record anything.
+  record.options = {{"radius", Json::array({"$(touch mine)"})}};
+  EXPECT_EQ(commandOf(record, {"s.toml"}, "l.vpl"),
+            "vpl-estimate s.toml -o l.vpl --radius '[\"$(touch mine)\"]'");
 }
 
 TEST_F(DeepCheck, AnImageThatWasEditedIsRefused) {

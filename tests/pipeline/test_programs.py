@@ -216,6 +216,7 @@ class ToolOptions(Programs):
             ("estimate", "-z 3", "-z is no option of vpl-estimate; see vpl-estimate --help"),
             ("place", "more", "'more' is neither an option of vpl-place nor the value of one"),
             ("eliminate", "--uniform-share x", "--uniform-share 'x' is not a number"),
+            ("estimate", "--stats x", "--stats is given to vpl-estimate twice; leave it out"),
         ):
             self.refused(
                 self.script("generate_ninja.py", self.scene, f"--{stage}-flags={words}"),

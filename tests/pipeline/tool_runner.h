@@ -35,7 +35,7 @@ class PipelineTest : public ::testing::Test {
   // Runs a tool such as vpl-place with arguments for the shell.
   Outcome tool(const std::string& name, const std::string& arguments,
                const std::string& limits = "") const;
-  // Runs the tool and expects success without output.
+  // Runs the tool and expects success.
   void succeed(const std::string& name, const std::string& arguments) const;
   // Runs the tool and expects the exit code and one line on stderr that begins with the tool's name
   // and holds every part.

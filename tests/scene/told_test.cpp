@@ -63,8 +63,8 @@ TEST_F(Told, ExposuresOfARadianceImageAreUndone) {
 }
 
 TEST_F(Told, ScalesOfAPfm) {
-  const auto sky = [&](const std::string& scale) {
-    std::string bytes = "PF\n2 1\n" + scale + "\n";
+  const auto sky = [&](const std::string& scale, const std::string& end = "\n") {
+    std::string bytes = "PF" + end + "2 1" + end + scale + end;
     const float one = 1.0f;
     for (int i = 0; i < 6; ++i) bytes.append(reinterpret_cast<const char*>(&one), sizeof one);
     write("sky.pfm", bytes);
@@ -73,6 +73,7 @@ TEST_F(Told, ScalesOfAPfm) {
   };
   expectNear(sky("-1"), Vec3{1.0f}, 0.0f);
   expectNear(sky("-2.5"), Vec3{2.5f}, 0.0f);
+  expectNear(sky("-2.5", "\r\n"), Vec3{2.5f}, 0.0f);
   for (const char* bad : {"0", "-0", "nan", "-inf"}) EXPECT_THROW(sky(bad), InputError) << bad;
 }
 

@@ -181,7 +181,9 @@ bool Bsdf::sample(LobeGroup group, TransportMode transport, float pick, Point2 a
   const float ng = dot(point_.ng, out.wi);
   const bool crosses = drawn.wi.z < 0.0f;
   if (crosses ? ng >= 0.0f : ng <= 0.0f) return false;
-  if (!lit(*chosen, transport, out.wi)) return false;
+  // Light that goes straight on meets no side of the surface, wherever the shading normal points.
+  const bool straight = chosen->smooth && dot(out.wi, point_.wo) < -0.999999f;
+  if (!straight && !lit(*chosen, transport, out.wi)) return false;
   out.side = crosses ? -point_.ng : point_.ng;
   if (chosen->smooth) {
     out.pdf = 0.0f;

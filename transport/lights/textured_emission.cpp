@@ -157,7 +157,10 @@ void TexturedEmission::chooseLines() {
   lines_ = {};
   lines_.none = {true, true};
   if (finest != all.end()) lines_ = *finest;
-  exact_ = ofEmission == 0 || (ofEmission == 1 && finest == all.begin());
+  // An inverted image may be clamped at 0, where the quadrature may find no light.
+  const auto inverted = [](const TextureExpression& e) { return e.invert; };
+  exact_ = ofEmission == 0 || (ofEmission == 1 && finest == all.begin() &&
+                               std::ranges::none_of(scene_.expressions, inverted));
 }
 
 std::optional<std::array<std::array<double, 2>, 3>> TexturedEmission::uvsOf(

@@ -1,4 +1,5 @@
 // vpl-inspect check --deep on files that the stages wrote.
+#include "formats/image/exr_io.h"
 #include "tests/pipeline/tool_runner.h"
 #include "tools/common/process/exit_codes.h"
 
@@ -28,6 +29,7 @@ TEST_F(Chain, AWholeOnePasses) {
 // The commands in the message, run literally, repair the chain and change nothing that was right.
 TEST_F(Chain, TheCommandsOfTheMessageRepairIt) {
   const std::string image = readAll(at("image.exr"));
+  const std::vector<float> red = *readExr(at("image.exr")).find("R");
   succeed("vpl-place", scene_ + " -o " + path("candidates.vpl") + " -n 300 --seed 2");
   Outcome r = tool("vpl-inspect", all() + " --quiet --scene " + scene_);
   EXPECT_EQ(r.code, kExitInput);
@@ -39,7 +41,7 @@ TEST_F(Chain, TheCommandsOfTheMessageRepairIt) {
   r = shell("bash -e " + path("mend.sh"));
   ASSERT_EQ(r.code, 0) << commands << r.err;
   EXPECT_EQ(tool("vpl-inspect", all() + " --scene " + scene_).code, kExitOk);
-  EXPECT_NE(readAll(at("image.exr")), image);
+  EXPECT_NE(*readExr(at("image.exr")).find("R"), red);
   // With the first candidates and the same commands for the rest, the first image returns.
   succeed("vpl-place", scene_ + " -o " + path("candidates.vpl") + " -n 300");
   ASSERT_EQ(shell("bash -e " + path("mend.sh")).code, 0);

@@ -7,6 +7,7 @@
 
 #include "core/vec3.h"
 #include "formats/image/exr_io.h"
+#include "scene/load_scene.h"
 #include "tests/pipeline/tool_runner.h"
 #include "tools/common/process/exit_codes.h"
 #include "tools/common/run/run_tool.h"
@@ -15,7 +16,7 @@ namespace bnvpl {
 namespace {
 
 constexpr const char* kCompositing =
-    " --layers A,P,Z,objectid,materialid,CryptoObject,CryptoMaterial";
+    " --layers A,P,Z,N,objectid,materialid,CryptoObject,CryptoMaterial";
 
 class ImageLayers : public PipelineTest {
  protected:
@@ -103,7 +104,12 @@ TEST_F(ImageLayers, CoverageAndPositionsAreThoseOfTheFirstHits) {
   const Image image = render(std::string(" --spp 16") + kCompositing);
   const auto& m = image.camera->worldToNdc;
   const std::vector<float>& coverage = *image.find("A");
+  const Scene scene = loadScene(BNVPL_SOURCE "/scenes/test/one-bounce.toml");
   size_t covered = 0, partly = 0;
+  double depth = 0.0, expectedDepth = 0.0;
+  const auto valueOf = [&](const std::string& channel, size_t i) {
+    return (*image.find(channel))[i];
+  };
   for (size_t i = 0; i < image.pixelCount(); ++i) {
     EXPECT_EQ(coverage[i] > 0.0f, std::isfinite((*image.find("Z"))[i]));
     EXPECT_EQ(coverage[i] > 0.0f, (*image.find("objectid"))[i] > 0.0f);
@@ -118,11 +124,19 @@ TEST_F(ImageLayers, CoverageAndPositionsAreThoseOfTheFirstHits) {
     // Positions project to their pixels.
     EXPECT_NEAR(column(0) / column(3) * 64.0f, float(i % 64) + 0.5f, 0.3f);
     EXPECT_NEAR(column(1) / column(3) * 48.0f, float(i / 64) + 0.5f, 0.3f);
-    if ((*image.find("objectid"))[i] == 1.0f &&
-        ranksOf(image, "CryptoObject", i)[1].second == 0.0f) {
-      EXPECT_NEAR(p.y, 0.0f, 1e-5f);  // the floor
+    if (ranksOf(image, "CryptoObject", i)[1].second > 0.0f) continue;
+    const auto object = static_cast<size_t>(valueOf("objectid", i)) - 1,
+               material = static_cast<size_t>(valueOf("materialid", i)) - 1;
+    EXPECT_EQ(scene.objectNames.at(object), scene.materials.at(material).name);
+    depth += double{valueOf("Z", i)};
+    expectedDepth += double{dot(p - scene.camera.position, scene.camera.forward)};
+    if (object == 0) {  // the floor
+      EXPECT_NEAR(p.y, 0.0f, 1e-5f);
+      for (const auto& [axis, value] : {std::pair{"X", 0.0f}, {"Y", 1.0f}, {"Z", 0.0f}})
+        EXPECT_NEAR(valueOf(std::string("N.") + axis, i), value, 1e-5f) << axis;
     }
   }
+  EXPECT_NEAR(depth, expectedDepth, 0.01 * expectedDepth);
   EXPECT_GT(covered, 500u);
   EXPECT_GT(partly, 20u);
 }
@@ -144,19 +158,19 @@ TEST_F(ImageLayers, ATransparentFilmLeavesOutTheSky) {
     const Image with = readExr(at("sky.exr")), without = readExr(at("clear.exr"));
     EXPECT_EQ(*with.find("A"), *without.find("A"));
     size_t empty = 0;
-    double skyLight = 0.0, surface = 0.0, clearSurface = 0.0;
+    double skyLight = 0.0, left = 0.0, surface = 0.0, clearSurface = 0.0;
     for (size_t i = 0; i < with.pixelCount(); ++i) {
       const float a = (*with.find("A"))[i], b = (*with.find("B"))[i],
                   clear = (*without.find("B"))[i];
       if (a == 0.0f) {
         ++empty;
-        skyLight += double{b};
-        // Rays of direct light may meet geometry where those of the layer do not.
-        EXPECT_LT(clear, method.find("path") != std::string::npos ? 1e-9f : 2.0f) << method;
+        skyLight += double{b}, left += double{clear};
       }
       if (a == 1.0f) surface += double{b}, clearSurface += double{clear};
     }
     EXPECT_GT(skyLight, 1.9 * double(empty)) << method;
+    // Further rays of direct light may meet geometry where those of the layer do not.
+    EXPECT_LT(left, (method.find("path") != std::string::npos ? 1e-9 : 0.05) * skyLight) << method;
     EXPECT_GT(empty, 100u);
     EXPECT_NEAR(clearSurface, surface, 0.02 * surface) << method;
   }
@@ -172,6 +186,8 @@ TEST_F(ImageLayers, DenoiserFeaturesAreThoseOfTheSurfaces) {
       EXPECT_EQ(y, 0.0f);
     } else if (coverage[i] == 1.0f && object == 1.0f) {
       EXPECT_NEAR((*image.find("denoise_albedo.G"))[i], (*image.find("albedo.G"))[i], 1e-5f);
+      EXPECT_NEAR(y, 1.0f, 1e-5f);  // the floor's
+      EXPECT_NEAR((*image.find("denoise_normal.X"))[i], 0.0f, 1e-5f);
     }
   }
 }

@@ -121,9 +121,11 @@ TEST_F(ResumeRun, UselessCheckpointsAreReplacedWhereThatIsAsked) {
   const std::string bytes = readAll(at("c"));
   for (const std::string& useless : {bytes, bytes.substr(0, bytes.size() - 1)}) {
     write("c", useless);
-    const Outcome r = tool("vpl-estimate", estimate + "20k -o " + path("b.vpl") + replaced);
+    const Outcome r =
+        tool("vpl-estimate", estimate + "20k --strict -o " + path("b.vpl") + replaced);
     EXPECT_EQ(r.code, kExitOk) << r.err;
     EXPECT_TRUE(contains(r.err, "/c:") && contains(r.err, "begins anew")) << r.err;
+    EXPECT_FALSE(contains(r.err, "add --checkpoint-replace")) << r.err;
     EXPECT_EQ(readAll(at("a.vpl")), readAll(at("b.vpl")));
     EXPECT_FALSE(fs::exists(at("c")));
   }

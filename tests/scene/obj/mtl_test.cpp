@@ -34,6 +34,13 @@ TEST_F(Mtl, BlendersDefaultWallIsNoMirror) {
   EXPECT_EQ(of(paint(kPlain)).phong().glossy, Vec3(0.5f));
 }
 
+TEST_F(Mtl, BlendersExporterInPythonHasOtherExponents) {
+  const Scene s = paint(
+      "# Blender MTL File: 'room.blend'\n# Material Count: 1\n\nnewmtl paint\n"
+      "Ns 225.000000\nKa 1 1 1\nKd 0.8 0.8 0.8\nKs 0.5 0.5 0.5\nillum 2\n");
+  EXPECT_NEAR(facets(s).roughness.value, 0.5f, 1e-6f);
+}
+
 TEST_F(Mtl, IllumOneHasNoHighlight) {
   const Scene s = paint("newmtl paint\nKd 0.3 0.3 0.3\nKs 0.5 0.5 0.5\nNs 30\nillum 1\n");
   EXPECT_EQ(of(s).phong().glossy, Vec3(0));

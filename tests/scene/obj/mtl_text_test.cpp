@@ -35,6 +35,7 @@ TEST_F(MtlForms, OneValueIsGrey) {
 TEST_F(MtlForms, CieIsConvertedAndIgnoredSpectraAreReported) {
   const Vec3 white = diffuse("Kd xyz 0.9505 1 1.089\n");
   EXPECT_LT(length(white - Vec3(1)), 1e-3f);
+  EXPECT_EQ(diffuse("Kd xyz +0.9505 +1 +1.089\n"), white);
   const Scene spectral = paint("Kd spectral white.rfl 0.5\n");
   EXPECT_EQ(spectral.materials.at(0).phong().diffuse, Vec3(0.5f));
   EXPECT_EQ(countContaining(spectral.warnings, "Kd spectral is ignored"), 1u);

@@ -67,6 +67,12 @@ TEST_F(PbrtLights, PointSpotAndDistant) {
   expectNear(spot.direction, {0, 0, -1}, 1e-6f);
   EXPECT_NEAR(spot.coneRad, 40.0 * std::numbers::pi / 180.0, 1e-5);
   EXPECT_NEAR(spot.falloffRad, 10.0 * std::numbers::pi / 180.0, 1e-5);
+  EXPECT_EQ(spot.emission, Vec3(1));
+  // From 30 to 60 degrees the intensity falls, which pbrt counts as half of it.
+  EXPECT_NEAR(light("LightSource \"spot\" \"float power\" 4 \"float coneangle\" 60 "
+                    "\"float conedeltaangle\" 30")
+                  .emission.x,
+              4.0 / (2.0 * std::numbers::pi * (1.0 - 0.5 * (std::sqrt(0.75) + 0.5))), 1e-4);
   const LightSpec sun =
       light("Rotate 90 1 0 0 LightSource \"distant\" \"rgb L\" [2 2 2] \"float illuminance\" 3");
   expectNear(sun.direction, {0, -1, 0}, 1e-6f);  // +z, rotated
@@ -93,6 +99,27 @@ TEST_F(PbrtLights, GoniometricEmitsUniformlyAndProjectionIsLeftOut) {
   EXPECT_EQ(countContaining(s.warnings, "'projection'"), 1u);
 }
 
+std::string pfm(uint32_t side, const std::vector<Vec3>& fromTheTop) {
+  std::string bytes = "PF\n" + std::to_string(side) + " " + std::to_string(side) + "\n-1.0\n";
+  for (uint32_t row = side; row-- > 0;) {
+    const auto* begin = reinterpret_cast<const char*>(&fromTheTop[row * side]);
+    bytes.append(begin, side * sizeof(Vec3));
+  }
+  return bytes;
+}
+
+TEST_F(PbrtLights, PowerOfImages) {
+  const std::vector<Vec3> grey(16, Vec3(0.5f));
+  write("grey.pfm", pfm(4, grey));
+  const std::string file = " \"string filename\" \"grey.pfm\" ";
+  const Scene sky = loadWorld("LightSource \"infinite\"" + file + "\"float illuminance\" 3\n");
+  // pbrt's illuminance of a sky image is half of the true one.
+  EXPECT_NEAR(sky.environments.at(0).radiance.at(0).x, 6.0 / std::numbers::pi, 0.02);
+  EXPECT_NEAR(light("LightSource \"goniometric\"" + file).emission.x, 0.5, 1e-5);
+  EXPECT_NEAR(light("LightSource \"goniometric\"" + file + "\"float power\" 4").emission.x,
+              1.0 / std::numbers::pi, 1e-5);
+}
+
 // The mapping preserves area: +z is the middle, -z the corners, the equator the diamond between.
 TEST(Octahedral, Square) {
   const auto expectAt = [](FilePoint d, double u, double v) {
@@ -107,15 +134,6 @@ TEST(Octahedral, Square) {
   expectAt({1e-9, 1e-9, -1}, 1.0, 1.0);
   expectAt({0.6, 0, 0.8}, 0.5 + 0.5 * std::sqrt(0.2), 0.5);
   expectAt({std::sqrt(0.5), std::sqrt(0.5), 0}, 0.75, 0.75);
-}
-
-std::string pfm(uint32_t side, const std::vector<Vec3>& fromTheTop) {
-  std::string bytes = "PF\n" + std::to_string(side) + " " + std::to_string(side) + "\n-1.0\n";
-  for (uint32_t row = side; row-- > 0;) {
-    const auto* begin = reinterpret_cast<const char*>(&fromTheTop[row * side]);
-    bytes.append(begin, side * sizeof(Vec3));
-  }
-  return bytes;
 }
 
 TEST_F(PbrtLights, EnvironmentImagesLookTheSameWayAndKeepTheirLight) {
@@ -151,6 +169,29 @@ TEST_F(PbrtLights, EnvironmentImagesLookTheSameWayAndKeepTheirLight) {
   write("wide.pfm", "PF\n2 1\n-1\n" + std::string(24, '\0'));
   expectError("WorldBegin LightSource \"infinite\" \"string filename\" \"wide.pfm\"", "1:35",
               {"2 x 1", "makeequiarea"});
+}
+
+TEST_F(PbrtLights, EnvironmentImagesTellFrontFromBack) {
+  // The image is bright where x > 0, y > 0 and z < 0: in a corner of the square.
+  constexpr uint32_t kSide = 64;
+  std::vector<Vec3> square(kSide * kSide);
+  for (uint32_t y = kSide / 2; y < kSide; ++y) {
+    for (uint32_t x = kSide / 2; x < kSide; ++x) {
+      if (x + y >= 3 * kSide / 2) square[y * kSide + x] = Vec3(4);
+    }
+  }
+  write("sky.pfm", pfm(kSide, square));
+  const auto lookup = [&](const std::string& before, Vec3 d) {
+    const Scene s =
+        loadWorld(before + " LightSource \"infinite\" \"string filename\" \"sky.pfm\"\n");
+    float u, v;
+    texelOf(s.lights[0], normalize(d), u, v);
+    return s.environments.at(0).lookup(u, v).x;
+  };
+  EXPECT_NEAR(lookup("", {1, 1, -3}), 4.0f, 0.05f);
+  EXPECT_EQ(lookup("", {1, 1, 3}), 0.0f);
+  EXPECT_NEAR(lookup("Rotate 90 1 0 0", {1, 3, 1}), 4.0f, 0.05f);  // y is z now, and z is -y
+  EXPECT_EQ(lookup("Rotate 90 1 0 0", {1, -3, 1}), 0.0f);
 }
 
 // A sun of one texel has its power, and the sky around it its own.

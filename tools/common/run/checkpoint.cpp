@@ -43,15 +43,14 @@ std::string difference(const Json& before, const Json& now, const std::string& p
 }
 
 // Returns the state in `file`, empty if there is none. Throws InputError if the file belongs to
-// another run.
-std::string stateIn(const fs::path& file, const Json& run) {
+// another run, with `cure`.
+std::string stateIn(const fs::path& file, const Json& run, const std::string& cure) {
   std::optional<CheckpointFile> found = findCheckpoint(file);
   if (!found) return "";  // another run of the command has just ended
   const Json theirs = parseJson(found->run);
   if (theirs != run) {
-    throw InputError(file, "is the checkpoint of another run (" + differenceOf(theirs, run) +
-                               "); repeat that run's command, name another file, or add "
-                               "--checkpoint-replace");
+    throw InputError(file,
+                     "is the checkpoint of another run (" + differenceOf(theirs, run) + ")" + cure);
   }
   return std::move(found->state);
 }
@@ -83,10 +82,13 @@ Checkpoint::Checkpoint(CheckpointOptions options, Json run)
   requireWritable({options_.file});
   run_["processor_id"] = processorId(processorOf(run_));
   try {
-    earlier_ = stateIn(options_.file, run_);
+    earlier_ = stateIn(options_.file, run_,
+                       options_.replace ? ""
+                                        : "; repeat that run's command, name another file, or add "
+                                          "--checkpoint-replace");
   } catch (const InputError& unusable) {
     if (!options_.replace || !beginsAsCheckpoint(options_.file).value_or(false)) throw;
-    printWarnings(runningTool(), {std::string(unusable.what()) + "; the work begins anew"});
+    warnAsAsked(std::string(unusable.what()) + "; the work begins anew");
   }
 }
 

@@ -324,6 +324,8 @@ void printWarnings(const std::string& tool, const std::vector<std::string>& warn
     throw InputError("a warning is an error with --strict; nothing is written");
 }
 
+void warnAsAsked(const std::string& text) { tellWarnings(toolName, {text}); }
+
 void warnOfResult(const std::string& text) {
   resultWarned = true;
   tellWarnings(toolName, {text});

@@ -122,6 +122,8 @@ class Summary {
 // Prints each warning as one line on stderr. --quiet does not silence warnings. Throws InputError
 // after them with --strict.
 void printWarnings(const std::string& tool, const std::vector<std::string>& warnings);
+// Prints a warning of what an option asks for, which --strict allows.
+void warnAsAsked(const std::string& text);
 
 // Holds a warning about an input back until printHeldWarnings(). If an InputError ends the tool,
 // runTool() prints the held warnings before it, except one that the error repeats; if the tool

@@ -21,7 +21,7 @@ bool sameRecord(const StageRecord& a, const StageRecord& b) {
 std::string optionText(const Json& value) {
   if (value.is_boolean()) return value.get<bool>() ? "on" : "off";
   if (value.is_string()) return shellWord(value.get<std::string>());
-  if (!value.is_number_float()) return jsonText(value);
+  if (!value.is_number_float()) return shellWord(jsonText(value));
   char text[32];  // shortest text that parses back to this number
   const auto end = std::to_chars(text, text + sizeof text, value.get<double>());
   return {text, end.ptr};

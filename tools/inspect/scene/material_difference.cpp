@@ -43,10 +43,11 @@ Parts partsOf(const Material& m) {
   const auto field = [&](const char*, const auto& value) { parts.add(value); };
   std::visit([&](const auto& model) { forEachField(model, field); }, m.model);
   parts.add(m.emission);
-  parts.add(m.twoSidedEmission);
+  const bool lamp = !isBlack(m.emission);  // the rest of its emission does not matter otherwise
+  parts.add(lamp && m.twoSidedEmission);
   parts.add(m.opacityCutoff);
   parts.add(m.masked());
-  parts.expressions.push_back(m.emissionTexture);
+  parts.expressions.push_back(lamp ? m.emissionTexture : kNone);
   addRelief(m.relief, parts);
   addRelief(m.coatRelief, parts);
   return parts;

@@ -27,6 +27,7 @@ class Comparison {
   bool sameViews() const;
   bool sameLights() const;
   bool sameInstances() const;
+  bool sameExtent() const;  // bounds, and the size by which ray origins are moved
   // Names the first material or triangle that differs; empty: none.
   std::string triangles(uint32_t beginA, uint32_t endA, uint32_t beginB, uint32_t endB);
   std::string prototypes();
@@ -132,6 +133,13 @@ bool Comparison::sameInstances() const {
   return std::ranges::equal(instancesInOrder(a_), instancesInOrder(b_), same);
 }
 
+bool Comparison::sameExtent() const {
+  const float size = a_.offsetSize();
+  return samePlace(a_.bounds.lower, b_.bounds.lower) &&
+         samePlace(a_.bounds.upper, b_.bounds.upper) &&
+         std::fabs(size - b_.offsetSize()) <= kRounding * size;
+}
+
 std::string Comparison::prototypes() {
   const std::vector<Instance> of = instancesInOrder(a_), again = instancesInOrder(b_);
   std::string difference;
@@ -152,6 +160,7 @@ std::string sceneDifference(const Scene& scene, const Scene& again) {
   const std::string world = comparison.triangles(0, scene.worldEnd(), 0, again.worldEnd());
   if (!world.empty()) return world;
   if (!comparison.sameInstances()) return "an instance";
+  if (!comparison.sameExtent()) return "which triangles lie far away";
   return comparison.prototypes();
 }
 

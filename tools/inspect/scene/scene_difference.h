@@ -8,7 +8,8 @@
 namespace bnvpl {
 
 // Compares a scene with itself after writing (write_scene.h) and reading: camera and film, lights,
-// triangles with their materials, instances. Names the first part that differs; empty: none.
+// triangles with their materials, instances, extent. Names the first part that differs; empty:
+// none.
 std::string sceneDifference(const Scene& scene, const Scene& again);
 
 }  // namespace bnvpl

@@ -1,6 +1,6 @@
 #include <algorithm>
 #include <cmath>
-#include <span>
+#include <vector>
 
 #include "core/number_text.h"
 #include "scene/affine.h"
@@ -36,17 +36,23 @@ std::string placeText(Vec3 p, const FilePoint& origin) {
 
 }  // namespace
 
-// Keeps the scene's order of triangles, with one usemtl for consecutive triangles of one material,
-// and one o for those of one object.
+// Keeps the scene's order of triangles, with faces that were cut behind them, and one usemtl for
+// consecutive triangles of one material, and one o for those of one object.
 std::string objText(const Scene& scene, uint32_t begin, uint32_t end,
                     const std::vector<std::string>& names,
                     const std::vector<std::string>& objects) {
-  const std::span triangles(&scene.triangles[begin], end - begin);
+  const bool world = begin < scene.worldEnd();
+  std::vector<ObjectTriangle> triangles;
+  for (uint32_t i = begin; i < end; ++i) {
+    if (const Triangle& t = scene.triangles[i]; !scene.isPiece(t))
+      triangles.push_back({t, scene.objectOf(i)});
+  }
+  if (world) triangles.insert(triangles.end(), scene.cutFaces.begin(), scene.cutFaces.end());
   const auto hasUv = [&](const Triangle& t, size_t k) {
     return t.uv[k] != kNone && isFinite(scene.uvs[t.uv[k]]);
   };
   Numbering positions, normals, uvs;
-  for (const Triangle& t : triangles) {
+  for (const auto& [t, object] : triangles) {
     for (size_t k = 0; k < 3; ++k) {
       positions.used.push_back(t.position[k]);
       if (t.normal[k] != kNone) normals.used.push_back(t.normal[k]);
@@ -56,15 +62,13 @@ std::string objText(const Scene& scene, uint32_t begin, uint32_t end,
   for (Numbering* n : {&positions, &normals, &uvs}) n->finish();
 
   std::string text = "mtllib scene.mtl\n";
-  const bool world = begin < scene.worldEnd();
   for (const uint32_t i : positions.used)
     text += "v" + placeText(scene.positions[i], world ? scene.origin : FilePoint{}) + "\n";
   for (const uint32_t i : normals.used) text += "vn" + placeText(scene.normals[i], {}) + "\n";
   for (const uint32_t i : uvs.used)
     text += "vt " + shortestText(scene.uvs[i][0]) + " " + shortestText(scene.uvs[i][1]) + "\n";
   uint32_t material = kNone, object = kNone;
-  for (const Triangle& t : triangles) {
-    const uint32_t here = scene.objectOf(begin + static_cast<uint32_t>(&t - triangles.data()));
+  for (const auto& [t, here] : triangles) {
     if (here != object) text += "o " + objects[here] + "\n";
     object = here;
     if (t.material != material) text += "usemtl " + names[t.material] + "\n";

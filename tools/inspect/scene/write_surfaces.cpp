@@ -133,8 +133,7 @@ void Surfaces::texture(uint32_t expression) {
   textures_ += "\n[[texture]]\nname = " + inQuotes(name) +
                "\ntype = " + (white ? inQuotes("constant") : nameIn(kTextureNames, e.kind)) + "\n";
   if (white || e.kind == TextureExpression::Kind::Constant) {
-    const Vec3 value = white ? max(e.invert ? Vec3(1) - e.value : e.value, Vec3()) : e.value;
-    textures_ += "value = " + listText(value) + "\n";
+    textures_ += "value = " + listText(white ? Vec3(1) : e.value) + "\n";
   }
   const auto operand = [&](const char* key, uint32_t number) {
     if (number != kNone)

@@ -23,6 +23,22 @@ TEST(Dielectric, KeepsToWhatEveryModelDoes) {
   check(materialOf(thin), "sheet");
 }
 
+// Partial opacity lets light through unchanged, also where a normal map faces away from the viewer.
+TEST(Dielectric, StraightLightPassesWhateverTheShadingNormal) {
+  DielectricModel nothing = glass(0.0f, 1.0f);
+  nothing.thin = true;
+  const Scene scene = sceneOf(materialOf(nothing));
+  SurfacePoint p = seenFrom(normalize(Vec3(1, 0, 0.15f)));
+  p.ns = normalize(Vec3(-0.5f, 0, 0.8f));
+  ASSERT_LT(dot(p.ns, p.wo), 0.0f);
+  for (const auto transport : {TransportMode::Radiance, TransportMode::Importance}) {
+    BsdfSample s;
+    ASSERT_TRUE(Bsdf(scene, p).sample(LobeGroup::Specular, transport, 0.3f, {0.4f, 0.6f}, s));
+    expectClose(s.wi, -p.wo, 1e-5f);
+    expectClose(s.weight, Vec3(1), 1e-5f);
+  }
+}
+
 struct Split {
   float reflected = 0.0f, crossed = 0.0f;
 };

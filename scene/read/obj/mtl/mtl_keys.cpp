@@ -18,6 +18,7 @@ std::map<std::string, MtlKeys> mtlKeys(std::string_view library) {
   MtlKeys unnamed;
   MtlKeys* keys = &unnamed;
   const bool blender = library.starts_with("# Blender ");
+  const bool byPython = library.starts_with("# Blender MTL File");
   while (!library.empty()) {
     const size_t end = std::min(library.find('\n'), library.size());
     const std::string_view line = trimmed(library.substr(0, end));
@@ -28,6 +29,7 @@ std::map<std::string, MtlKeys> mtlKeys(std::string_view library) {
       const auto [it, isNew] = out.try_emplace(firstLine(std::string(trimmed(line.substr(blank)))));
       keys = isNew ? &it->second : &unnamed;
       keys->blender = blender;
+      if (byPython) keys->smoothExponent = 900.0f;
     } else if (!key.empty() && key[0] != '#') {
       keys->keys.emplace(key);
     }

@@ -14,7 +14,9 @@ struct MtlKeys {
   std::set<std::string, std::less<>> keys;
   std::vector<std::string> notes;  // what of its lines is ignored: MtlNotes
   bool blender = false;            // the library says that Blender wrote it
-  size_t line = 0;                 // where the material begins
+  // Ns of roughness 0; Blender's exporter in Python (2.8 to 3.2) wrote 900.
+  float smoothExponent = 1000.0f;
+  size_t line = 0;  // where the material begins
 
   bool has(std::string_view key) const { return keys.contains(key); }
   // Whether it is read as metallic-roughness, else as Phong, mirror or glass

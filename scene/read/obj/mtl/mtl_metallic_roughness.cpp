@@ -19,8 +19,9 @@ Vec3 clamped(const tinyobj::real_t* v) { return {clamped(v[0]), clamped(v[1]), c
 float roughnessOf(const tinyobj::material_t& in, const MtlKeys& keys) {
   if (keys.has("Pr")) return clamped(in.roughness);
   if (keys.has("map_Pr") || keys.has("map_Ns")) return 1.0f;
-  if (!keys.has("Ns")) return 0.5f;                         // Blender's default
-  return 1.0f - std::sqrt(clamped(in.shininess / 1000.0));  // Blender's approximation
+  if (!keys.has("Ns")) return 0.5f;  // Blender's default
+  // Blender's approximation
+  return 1.0f - std::sqrt(clamped(in.shininess / double{keys.smoothExponent}));
 }
 
 float metallicOf(const tinyobj::material_t& in, const MtlKeys& keys) {

@@ -169,8 +169,7 @@ class Lines {
     constexpr double kRgb[3][3] = {
         {3.2406, -1.5372, -0.4986}, {-0.9689, 1.8758, 0.0415}, {0.0557, -0.2040, 1.0570}};
     std::array<double, 3> in{};
-    for (size_t i = 0; i < 3; ++i)
-      std::from_chars(xyz[i].data(), xyz[i].data() + xyz[i].size(), in[i]);
+    for (size_t i = 0; i < 3; ++i) in[i] = valueOf(xyz[i]);
     std::vector<std::string> out;
     for (const auto& row : kRgb)
       out.push_back(shortestText(std::max(0.0, row[0] * in[0] + row[1] * in[1] + row[2] * in[2])));

@@ -1,62 +1,12 @@
-// vpl-inspect scene --to-toml writes a scene equal to the original, and replaces no other files.
+// vpl-inspect scene --to-toml writes a scene equal to the original.
+#include "tests/inspect/scene/to_toml.h"
+
 #include "formats/image/exr_io.h"
-#include "formats/image/png_io.h"
 #include "scene/choose_view.h"
-#include "scene/load_scene.h"
 #include "scene/visit_material.h"
-#include "tests/inspect/run_inspect.h"
-#include "tests/inspect/tiny_scene.h"
-#include "tools/inspect/scene/scene_difference.h"
 
 namespace bnvpl {
 namespace {
-
-const std::string kPbrtView =
-    "LookAt 0 0 3  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 40\n"
-    "Film \"rgb\" \"integer xresolution\" 32 \"integer yresolution\" 24\nWorldBegin\n"
-    "LightSource \"infinite\" \"rgb L\" [1 1 1]\n";
-const std::string kSquare =
-    "Shape \"trianglemesh\" \"point3 P\" [-1 -1 0 1 -1 0 1 1 0 -1 1 0] \"integer indices\" "
-    "[0 1 2 0 2 3] \"point2 uv\" [0 0 1 0 1 1 0 1]\n";
-const std::string kView =
-    "[film]\nwidth = 32\nheight = 24\n[camera]\nposition = [0, 0, 3]\nlook_at = [0, 0, 0]\n"
-    "vertical_fov_deg = 40\n";
-
-class ToToml : public InspectTest {
- protected:
-  static std::string quoted(const fs::path& path) { return "'" + path.string() + "'"; }
-  Outcome convert(const std::string& name, const std::string& to, const std::string& more = "") {
-    return runInspect("scene " + quoted(at(name)) + " --to-toml " + quoted(at(to)) + " " + more);
-  }
-  // Converts the scene, converts the result again, and expects both copies to equal the original.
-  Scene copyOf(const std::string& name) {
-    for (const char* folder : {"copy", "copy of copy"}) {
-      const Outcome done =
-          convert(folder == std::string("copy") ? name : "copy/scene.toml", folder);
-      EXPECT_EQ(done.code, 0) << done.output;
-    }
-    const Scene scene = loadScene(at(name)), copy = loadScene(at("copy/scene.toml"));
-    EXPECT_EQ(sceneDifference(scene, copy), "");
-    EXPECT_EQ(sceneDifference(scene, loadScene(at("copy of copy/scene.toml"))), "");
-    EXPECT_TRUE(copy.warnings.empty()) << copy.warnings.front();
-    return copy;
-  }
-  Scene copyOfPbrt(const std::string& world) {
-    writeAll(at("s.pbrt"), kPbrtView + world);
-    return copyOf("s.pbrt");
-  }
-  void writePicture(const std::string& name) const {  // 2 x 2: red, green, blue, grey
-    writePng(at(name), 2, 2, std::vector<uint8_t>{255, 0, 0, 0, 255, 0, 0, 0, 255, 90, 90, 90});
-  }
-  template <typename Model>
-  static const Model& modelOf(const Scene& scene) {
-    return std::get<Model>(scene.materials.at(scene.triangles.at(0).material).model);
-  }
-  void writeTinyAs(const std::string& name) const {
-    writeTinyScene(at("."));
-    fs::rename(at("tiny.toml"), at(name));
-  }
-};
 
 TEST_F(ToToml, KeepsInstances) {
   writeTinyScene(at("."));
@@ -69,6 +19,58 @@ TEST_F(ToToml, KeepsInstances) {
   EXPECT_EQ(copy.instances[0].point({}), Vec3(1, 2, 2));
   EXPECT_EQ(copy.instances[1].mirrored, 1u);
   EXPECT_EQ(copy.prototypes.size(), 1u);
+}
+
+// Faces that reach far away are written whole, not as the pieces into which reading cuts them.
+TEST_F(ToToml, KeepsTheExtentOfScenesWithFarFaces) {
+  writeTinyScene(at("."));
+  writeAll(at("tiny.obj"), readAll(at("tiny.obj")) +
+                               "o ground\nv -1e5 -9 -1e5\nv 1e5 -9 -1e5\nv 1e5 -9 1e5\n"
+                               "v -1e5 -9 1e5\nf -4 -3 -2 -1\n");
+  for (const char* from : {"tiny.toml", "copy/scene.toml"}) {
+    const Outcome done = convert(from, from[0] == 't' ? "copy" : "copy of copy");
+    ASSERT_EQ(done.code, 0) << done.output;
+  }
+  const Scene scene = loadScene(at("tiny.toml"));
+  EXPECT_GT(scene.triangles.size(), 100u);
+  EXPECT_EQ(scene.cutFaces.size(), 2u);
+  for (const char* folder : {"copy", "copy of copy"}) {
+    const std::string obj = readAll(at(folder + std::string("/scene.obj")));
+    EXPECT_LT(std::ranges::count(obj, 'f'), 20) << folder;
+    const Scene copy = loadScene(at(folder + std::string("/scene.toml")));
+    EXPECT_EQ(sceneDifference(scene, copy), "") << folder;
+    EXPECT_NEAR(copy.offsetSize(), scene.offsetSize(), 1e-4f * scene.offsetSize());
+    EXPECT_EQ(copy.objectNames, scene.objectNames);
+  }
+  Scene other = scene;
+  other.nearSize *= 2.0f;
+  EXPECT_EQ(sceneDifference(scene, other), "which triangles lie far away");
+}
+
+TEST_F(ToToml, KeepsAMeshOfWhichAllInstancesButOneHaveNoVolume) {
+  writeTinyScene(at("."));
+  writeAll(at("tiny.toml"), readAll(at("tiny.toml")) +
+                                "[[mesh]]\nfile = \"tiny.obj\"\n"
+                                "[[mesh.instance]]\ntranslate = [1, 2, 2]\n"
+                                "[[mesh.instance]]\nscale = [0, 0, 0]\n");
+  const Scene scene = loadScene(at("tiny.toml"));
+  EXPECT_EQ(scene.instances.size(), 0u);
+  EXPECT_EQ(std::ranges::count_if(
+                scene.warnings,
+                [](const std::string& w) { return w.find("without volume") != std::string::npos; }),
+            1);
+  copyOf("tiny.toml");
+}
+
+TEST_F(ToToml, KeepsLampsThatAreOff) {
+  writeTinyScene(at("."));
+  writePicture("p.png");
+  writeAll(at("tiny.toml"),
+           readAll(at("tiny.toml")) +
+               "[[texture]]\nname = \"t\"\ntype = \"image\"\nimage = \"p.png\"\n"
+               "[[material]]\nname = \"white\"\nmodel = \"diffuse\"\nemission = [0, 0, 0]\n"
+               "emission_texture = \"t\"\nemission_sides = 2\n");
+  copyOf("tiny.toml");
 }
 
 TEST_F(ToToml, NamesMaterialsWithoutAName) {
@@ -273,77 +275,6 @@ TEST_F(ToToml, WhatTheReaderWouldRefuseIsRefusedWhole) {
   EXPECT_NE(refused.output.find("vertical_fov_deg"), std::string::npos) << refused.output;
   EXPECT_EQ(refused.output.find(".partial"), std::string::npos) << refused.output;
   EXPECT_FALSE(fs::exists(at("copy")));
-}
-
-class ToTomlFolder : public ToToml {
- protected:
-  void refuses(const Outcome& outcome, int code, const std::string& part) {
-    EXPECT_EQ(outcome.code, code) << outcome.output;
-    EXPECT_NE(outcome.output.find(part), std::string::npos) << outcome.output;
-    for (const auto& entry : fs::directory_iterator(at(".")))
-      EXPECT_EQ(entry.path().string().find(".partial"), std::string::npos) << entry.path();
-  }
-};
-
-TEST_F(ToTomlFolder, OneThatItMadeIsReplaced) {
-  writeTinyAs("scene.toml");
-  fs::create_directory(at("copy"));  // empty
-  ASSERT_EQ(convert("scene.toml", "copy").code, 0);
-  writeAll(at("tiny.mtl"), "newmtl white\nKd 0.2 0.2 0.2\n");
-  const Outcome again = convert("scene.toml", "copy/");
-  ASSERT_EQ(again.code, 0) << again.output;
-  EXPECT_EQ(loadScene(at("copy/scene.toml")).materials.at(0).phong().diffuse, Vec3(0.2f));
-  refuses(again, 0, "");
-}
-
-TEST_F(ToTomlFolder, WithOthersFilesIsRefused) {
-  writeTinyAs("scene.toml");
-  fs::create_directories(at("mine/textures"));
-  writeAll(at("mine/textures/0.png"), "precious");
-  refuses(convert("scene.toml", "mine"), 4, "textures/0.png");
-  EXPECT_EQ(readAll(at("mine/textures/0.png")), "precious");
-  ASSERT_EQ(convert("scene.toml", "copy").code, 0);
-  writeAll(at("copy/notes.txt"), "precious");
-  refuses(convert("scene.toml", "copy"), 4, "notes.txt");
-  fs::remove(at("copy/notes.txt"));
-  writeAll(at("copy/scene.mtl"), "newmtl mine\n");
-  refuses(convert("scene.toml", "copy"), 4, "scene.mtl, which was changed");
-  EXPECT_EQ(readAll(at("copy/scene.mtl")), "newmtl mine\n");
-}
-
-TEST_F(ToTomlFolder, WithTheScenesOwnFilesIsRefused) {
-  writeTinyAs("scene.toml");
-  ASSERT_EQ(convert("scene.toml", "copy").code, 0);
-  const std::string before = readAll(at("copy/scene.toml"));
-  refuses(convert("copy/scene.toml", "copy"), 2, "which the run reads");
-  writeAll(at("uses.toml"), kView + "[[mesh]]\nfile = \"copy/scene.obj\"\n");
-  refuses(convert("uses.toml", "copy"), 2, "which the run reads");
-  refuses(convert("scene.toml", "copy", "--stats " + quoted(at("copy/stats.json"))), 2,
-          "another output");
-  EXPECT_EQ(readAll(at("copy/scene.toml")), before);
-  fs::create_directory_symlink(at("copy"), at("link"));
-  refuses(convert("copy/scene.toml", "link"), 2, "which the run reads");
-  EXPECT_EQ(convert("scene.toml", "link").code, 0);
-  EXPECT_TRUE(fs::is_symlink(at("link")));
-}
-
-TEST_F(ToTomlFolder, ThatCannotBeOneIsRefused) {
-  writeTinyAs("scene.toml");
-  writeAll(at("file"), "precious");
-  refuses(convert("scene.toml", "file"), 4, "is no folder");
-  EXPECT_EQ(readAll(at("file")), "precious");
-  refuses(convert("scene.toml", "none/copy"), 4, "cannot write");
-}
-
-TEST_F(ToTomlFolder, ThatIsTheCurrentOneIsRefused) {
-  writeTinyAs("scene.toml");
-  fs::create_directory(at("here"));
-  Outcome outcome;
-  outcome.code = std::system(
-      ("cd " + quoted(at("here")) + " && '" BNVPL_INSPECT "' scene ../scene.toml --to-toml . 2>err")
-          .c_str());
-  EXPECT_NE(readAll(at("here/err")).find("name a folder"), std::string::npos);
-  EXPECT_NE(outcome.code, 0);
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Tests that a scene written by `vpl-inspect scene --to-toml` looks like the original.
 
-    tests/inspect/round_trip.py build/release/bin SCENE...   # --size 48x32 --seeds 12 detect more
+    tests/inspect/scene/round_trip.py build/release/bin SCENE...   # --size 48x32 --seeds 12 detect more
 
 Path traces both scenes through each camera. Where an image of twice the samples is not the same up to
 rounding, the seeds 1 to n follow. The differences at a pixel, one for each seed, are samples of a
