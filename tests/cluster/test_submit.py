@@ -76,7 +76,7 @@ class SubmitTest(SlurmTest):
         self.assertIn("is up to date", task.stdout)
 
     def test_what_fails_stops_what_comes_after_it_and_is_made_by_the_next_submission(self) -> None:
-        self.submit("--shards", "2", "--estimate-flags=--photons 3")
+        self.submit("--shards", "2", "--estimate-flags=--method even --paths 3")
         jobs = self.jobs()
         self.assertFalse(jobs["estimate"]["well"])
         self.assertFalse(jobs["render"]["well"])

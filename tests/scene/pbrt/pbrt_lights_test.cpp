@@ -109,8 +109,8 @@ std::string pfm(uint32_t side, const std::vector<Vec3>& fromTheTop) {
 }
 
 TEST_F(PbrtLights, PowerOfImages) {
-  const std::vector<Vec3> grey(16, Vec3(0.5f));
-  write("grey.pfm", pfm(4, grey));
+  const std::vector<Vec3> grey(64 * 64, Vec3(0.5f));
+  write("grey.pfm", pfm(64, grey));
   const std::string file = " \"string filename\" \"grey.pfm\" ";
   const Scene sky = loadWorld("LightSource \"infinite\"" + file + "\"float illuminance\" 3\n");
   // pbrt's illuminance of a sky image is half of the true one.

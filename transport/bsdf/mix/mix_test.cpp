@@ -58,7 +58,7 @@ TEST(Mix, OfMixesEndsAtTheMostLobes) {
   Scene scene = mixed(MixModel{3, 3, 0.5f}, MixModel{3, 3, 0.5f}, 0.5f);
   addMaterial(scene, "third", MixModel{4, 4, 0.5f});
   addMaterial(scene, "plastic", CoatedDiffuseModel{});
-  // Of the sixteen lobes of eight equal parts, those of the first four are kept.
+  // Eight of the sixteen lobes are kept: those of the first four of eight equal parts.
   const SurfacePoint p = seenFrom({0, 0, 1});
   const Scene plastic = sceneOf(materialOf(CoatedDiffuseModel{}));
   const Bsdf sum(scene, p), part(plastic, p);
