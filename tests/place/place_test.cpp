@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 
 #include "tests/support/pipeline.h"
 #include "tests/support/threads.h"
@@ -26,6 +27,37 @@ TEST(Place, ThreadsGiveExactlyTheCountInPathOrder) {
     ASSERT_EQ(few.position[i], more.position[i]);
     ASSERT_EQ(few.id[i], i);
   }
+}
+
+// A run that begins anew after each pause would never end.
+TEST(Place, ContinuesFromEveryPause) {
+  struct Stopped {};
+  const World world("u-shape/scene.toml");
+  const Given given = count(140000);
+  const PlaceViews views(world.scene);
+  std::string state;
+  size_t pauses = 0;
+  std::optional<VplTable> table;
+  while (!table) {
+    WorkControls controls;
+    controls.state = state;
+    controls.pause = [] { return true; };
+    controls.save = [&](const std::string& saved) {
+      state = saved;
+      throw Stopped();
+    };
+    try {
+      const Values options = resolve(placeSpec(), given);
+      table = place({world.accel, world.lights, views}, options, {}, controls).table;
+    } catch (const Stopped&) {
+      ASSERT_LT(++pauses, 20u);
+    }
+  }
+  EXPECT_GT(pauses, 1u);
+  const VplTable whole = placeVpls(world, given).table;
+  EXPECT_EQ(table->position, whole.position);
+  EXPECT_EQ(table->id, whole.id);
+  EXPECT_EQ(table->indirectShare, whole.indirectShare);
 }
 
 // Rows of shards; the merge asks for missing ones by their unit.
