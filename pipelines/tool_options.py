@@ -10,7 +10,7 @@ import json
 import pathlib
 import re
 import subprocess
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import stage_options
@@ -87,38 +87,38 @@ class Tool:
         cure = f"did you mean {near[0]}?" if near else f"see {self.name} --help"
         return f"{name} is no option of {self.name}; {cure}"
 
+    def parsed(self, words: Sequence[str]) -> Iterator[tuple[str, str, Option | None, str | None]]:
+        """Gives each word of a command line that is no value, and what it may be.
+
+        That is the name of an option, the option if there is one of that name, and its value, which
+        is None if it is missing.
+        """
+        left = list(words)
+        while left:
+            word = left.pop(0)
+            short = not word.startswith("--")
+            name, equals, own = (word[:2], word[2:], word[2:]) if short else word.partition("=")
+            option, value = self.options.get(name), own if equals else None
+            takes = option is not None and option["kind"] != "flag"
+            if takes and value is None and left and left[0] not in self.options:
+                value = left.pop(0)
+            yield word, name, option, value
+
     def given(self, words: Sequence[str]) -> list[str]:
         """Names of the options in the words of a command line, each as often as it occurs."""
-        found = []
-        left = list(words)
-        while left:
-            word = left.pop(0)
-            short = not word.startswith("--")
-            name, equals, _ = (word[:2], word[2:], "") if short else word.partition("=")
-            if option := self.options.get(name):
-                found.append(option["name"])
-                if option["kind"] != "flag" and not equals and left:
-                    left.pop(0)
-        return found
+        return [option["name"] for _, _, option, _ in self.parsed(words) if option]
 
-    def problem_of_words(self, words: list[str]) -> str:
+    def problem_of_words(self, words: Sequence[str]) -> str:
         """What is wrong with the words of a command line; empty if nothing is."""
-        left = list(words)
-        while left:
-            word = left.pop(0)
+        for word, name, option, value in self.parsed(words):
             if not re.match("-.", word):
                 return f"'{word}' is neither an option of {self.name} nor the value of one"
-            short = not word.startswith("--")
-            name, equals, value = (word[:2], word[2:], word[2:]) if short else word.partition("=")
-            option = self.options.get(name)
             if option is None:
                 return self.unknown(name)
             if option["kind"] == "flag":
                 continue
-            if not equals:
-                if not left or left[0] in self.options:
-                    return f"{name} needs a value: {option['type']}"
-                value = left.pop(0)
+            if value is None:
+                return f"{name} needs a value: {option['type']}"
             if problem := problem_of(option, value):
                 return f"{name} '{value}' {problem}"
         return ""
@@ -145,20 +145,16 @@ def _refuse_missing(tools: Mapping[str, Tool | None], options: argparse.Namespac
             )
 
 
-def _refuse_repeated(
-    tool: Tool, stage: str, options: argparse.Namespace, more: Sequence[str]
-) -> None:
-    """Refuses flags whose options the command of the stage has already."""
-    tasks = stages.tasks_of("scene/scene.toml", options)
-    command = next(task.command for task in tasks if task.stage == stage)
-    names = tool.given([*command[1:], *more])
-    flags = stage_options.words_of(getattr(options, f"{stage}_flags"), f"--{stage}-flags")
+def _repeated(tool: Tool, flags: Sequence[str], command: Sequence[str]) -> str:
+    """What is wrong with flags whose options the command, which they are part of, has already."""
+    names = tool.given(command)
     for name in tool.given(flags):
         if names.count(name) > 1 and not tool.options[f"--{name}"]["repeat"]:
-            stage_options.refuse(
-                f"--{stage}-flags: --{name} is given to {tool.name} twice; leave it out, and use "
-                "this program's own option or another --quality"
+            return (
+                f"--{name} is given to {tool.name} twice; leave it out, and use this program's own "
+                "option or another --quality"
             )
+    return ""
 
 
 def check(
@@ -180,9 +176,11 @@ def check(
     for name, text, option in asked:
         if text and (problem := problem_of(option, text)):
             stage_options.refuse(f"--{name} '{text}' {problem}")
+    commands = {task.stage: task.command for task in stages.tasks_of("scene/scene.toml", options)}
     for stage, tool in tools.items():
         words = stage_options.words_of(getattr(options, f"{stage}_flags"), f"--{stage}-flags")
-        if tool and (problem := tool.problem_of_words(words)):
+        if tool and (
+            problem := tool.problem_of_words(words)
+            or _repeated(tool, words, [*commands[stage][1:], *runner_gives])
+        ):
             stage_options.refuse(f"--{stage}-flags: {problem}")
-        if tool:
-            _refuse_repeated(tool, stage, options, runner_gives)

@@ -78,7 +78,7 @@ void SceneBuilder::listObjects() {
   }
   for (ObjectTriangle& face : scene_.cutFaces) {
     const Surface& surface = surfaces_[face.triangle.material];
-    face = {face.triangle, listed(surface.object)};
+    face.object = listed(surface.object);
     face.triangle.material = surface.material;
   }
   for (uint32_t& object : scene_.instanceObjects) {

@@ -182,7 +182,7 @@ bool Bsdf::sample(LobeGroup group, TransportMode transport, float pick, Point2 a
   const bool crosses = drawn.wi.z < 0.0f;
   if (crosses ? ng >= 0.0f : ng <= 0.0f) return false;
   // Light that goes straight on meets no side of the surface, wherever the shading normal points.
-  const bool straight = chosen->smooth && dot(out.wi, point_.wo) < -0.999999f;
+  const bool straight = crosses && chosen->smooth && dot(out.wi, point_.wo) < -0.999999f;
   if (!straight && !lit(*chosen, transport, out.wi)) return false;
   out.side = crosses ? -point_.ng : point_.ng;
   if (chosen->smooth) {

@@ -138,8 +138,11 @@ void TexturedEmission::addLines(uint32_t expression, std::vector<Lines>& out) co
   if (expression == kNone) return;
   const TextureExpression& e = scene_.expressions[expression];
   using Kind = TextureExpression::Kind;
-  if ((e.kind == Kind::Image && e.image != kNone) || e.kind == Kind::Checkerboard)
-    out.push_back(linesOf(e));
+  const bool image = e.kind == Kind::Image && e.image != kNone;
+  if (image || e.kind == Kind::Checkerboard) out.push_back(linesOf(e));
+  // 1 - value, which is clamped at 0 where the image is above 1.
+  if (image && e.invert)
+    out.back().clamped = maxComponent(e.value) > 1.0f || !scene_.textures[e.image].floats.empty();
   for (const uint32_t operand : {e.first, e.second, e.amount}) addLines(operand, out);
 }
 
@@ -157,10 +160,7 @@ void TexturedEmission::chooseLines() {
   lines_ = {};
   lines_.none = {true, true};
   if (finest != all.end()) lines_ = *finest;
-  // An inverted image may be clamped at 0, where the quadrature may find no light.
-  const auto inverted = [](const TextureExpression& e) { return e.invert; };
-  exact_ = ofEmission == 0 || (ofEmission == 1 && finest == all.begin() &&
-                               std::ranges::none_of(scene_.expressions, inverted));
+  exact_ = ofEmission == 0 || (ofEmission == 1 && finest == all.begin() && !finest->clamped);
 }
 
 std::optional<std::array<std::array<double, 2>, 3>> TexturedEmission::uvsOf(

@@ -39,6 +39,7 @@ class TexturedEmission {
     double a = 0, b = 0, c = 0, d = 0, e = 0, f = 0;
     std::array<double, 2> last{};  // number of columns and rows
     std::array<bool, 2> repeats{}, none{};
+    bool clamped = false;  // whether the texture may be 0 between texels that are not
     double perUv() const;
   };
   struct Corner {

@@ -50,6 +50,10 @@ class ToToml : public InspectTest {
   static const Model& modelOf(const Scene& scene) {
     return std::get<Model>(scene.materials.at(scene.triangles.at(0).material).model);
   }
+  void writeTinyWith(const std::string& more) const {
+    writeTinyScene(at("."));
+    writeAll(at("tiny.toml"), readAll(at("tiny.toml")) + more);
+  }
   void writeTinyAs(const std::string& name) const {
     writeTinyScene(at("."));
     fs::rename(at("tiny.toml"), at(name));

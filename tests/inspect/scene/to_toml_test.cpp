@@ -9,11 +9,10 @@ namespace bnvpl {
 namespace {
 
 TEST_F(ToToml, KeepsInstances) {
-  writeTinyScene(at("."));
-  writeAll(at("tiny.toml"), readAll(at("tiny.toml")) +
-                                "[[mesh]]\nfile = \"tiny.obj\"\nscale = 0.5\n"
-                                "[[mesh.instance]]\ntranslate = [1, 2, 2]\n"
-                                "[[mesh.instance]]\nrotate_deg = [0, 30, 0]\nscale = [1, -2, 1]\n");
+  writeTinyWith(
+      "[[mesh]]\nfile = \"tiny.obj\"\nscale = 0.5\n"
+      "[[mesh.instance]]\ntranslate = [1, 2, 2]\n"
+      "[[mesh.instance]]\nrotate_deg = [0, 30, 0]\nscale = [1, -2, 1]\n");
   const Scene copy = copyOf("tiny.toml");
   ASSERT_EQ(copy.instances.size(), 2u);
   EXPECT_EQ(copy.instances[0].point({}), Vec3(1, 2, 2));
@@ -48,11 +47,10 @@ TEST_F(ToToml, KeepsTheExtentOfScenesWithFarFaces) {
 }
 
 TEST_F(ToToml, KeepsAMeshOfWhichAllInstancesButOneHaveNoVolume) {
-  writeTinyScene(at("."));
-  writeAll(at("tiny.toml"), readAll(at("tiny.toml")) +
-                                "[[mesh]]\nfile = \"tiny.obj\"\n"
-                                "[[mesh.instance]]\ntranslate = [1, 2, 2]\n"
-                                "[[mesh.instance]]\nscale = [0, 0, 0]\n");
+  writeTinyWith(
+      "[[mesh]]\nfile = \"tiny.obj\"\n"
+      "[[mesh.instance]]\ntranslate = [1, 2, 2]\n"
+      "[[mesh.instance]]\nscale = [0, 0, 0]\n");
   const Scene scene = loadScene(at("tiny.toml"));
   EXPECT_EQ(scene.instances.size(), 0u);
   EXPECT_EQ(std::ranges::count_if(
@@ -63,13 +61,11 @@ TEST_F(ToToml, KeepsAMeshOfWhichAllInstancesButOneHaveNoVolume) {
 }
 
 TEST_F(ToToml, KeepsLampsThatAreOff) {
-  writeTinyScene(at("."));
   writePicture("p.png");
-  writeAll(at("tiny.toml"),
-           readAll(at("tiny.toml")) +
-               "[[texture]]\nname = \"t\"\ntype = \"image\"\nimage = \"p.png\"\n"
-               "[[material]]\nname = \"white\"\nmodel = \"diffuse\"\nemission = [0, 0, 0]\n"
-               "emission_texture = \"t\"\nemission_sides = 2\n");
+  writeTinyWith(
+      "[[texture]]\nname = \"t\"\ntype = \"image\"\nimage = \"p.png\"\n"
+      "[[material]]\nname = \"white\"\nmodel = \"diffuse\"\nemission = [0, 0, 0]\n"
+      "emission_texture = \"t\"\nemission_sides = 2\n");
   copyOf("tiny.toml");
 }
 
