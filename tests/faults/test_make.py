@@ -23,7 +23,7 @@ SETTINGS = [
     "CANDIDATES=2k",
     "VPLS=200",
     "PHOTONS=50k",
-    "SPP=128",
+    "SPP=48",
     "RENDER_FLAGS=--size 64x48 --checkpoint-every 0",
     "RUN_FLAGS=--quiet --threads 2",
 ]

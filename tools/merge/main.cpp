@@ -1,7 +1,5 @@
 // vpl-merge: merges the shards of a stage into the same bytes that the stage writes without
 // --shard.
-#include <algorithm>
-
 #include "core/files.h"
 #include "tools/common/files/depfile.h"
 #include "tools/common/options/exposure.h"
@@ -13,21 +11,12 @@
 namespace bnvpl {
 namespace {
 
-const MergeStage& stageOf(const ShardSet& shards) {
-  const std::string tool = fieldOf<std::string>(shards.whole().run, "tool");
-  const auto stages = mergeStages();
-  const auto found = std::ranges::find(stages, tool, &MergeStage::tool);
-  if (found == stages.end())
-    throw InputError("shards of " + tool + " cannot be merged; name those of another stage");
-  return *found;
-}
-
 int runMerge(const std::vector<fs::path>& inputs, const MergeOutput& output,
              const ToolOptions& tool) {
   Summary summary("vpl-merge");
   computeFor(processorOfShard(inputs.front()));
   ShardSet shards(inputs);
-  const MergeStage& stage = stageOf(shards);
+  const MergeStage& stage = mergeStageOf(shards);
   RunFiles used;
   for (const fs::path& file : inputs) used.reads("shard", file);
   const std::string extension = lowerExtension(output.product);
@@ -42,13 +31,17 @@ int runMerge(const std::vector<fs::path>& inputs, const MergeOutput& output,
   used.ready();
   OutputSet files;
   std::vector<fs::path> read;
-  if (toShard) {
-    shards.writeTo(files.add(output.product));
-  } else {
-    read = stage.merge(shards, output, files, summary);
-    for (const fs::path& file : read) used.reads("an input of the shards", file);
-    used.ready();
-    shards.verifyRest();
+  {
+    ProgressMeter meter("records", shards.records(), progressStyle(tool));
+    shards.reportTo(meter.callback());
+    if (toShard) {
+      shards.writeTo(files.add(output.product));
+    } else {
+      read = stage.merge(shards, output, files, summary);
+      for (const fs::path& file : read) used.reads("an input of the shards", file);
+      used.ready();
+      shards.verifyRest();
+    }
   }
   summary.add("shards", inputs.size(), "merged " + std::to_string(inputs.size()) + " files");
   read.insert(read.end(), inputs.begin(), inputs.end());

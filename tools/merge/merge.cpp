@@ -1,5 +1,6 @@
 #include "tools/merge/merge.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 
@@ -8,13 +9,17 @@
 
 namespace bnvpl {
 
-std::span<const MergeStage> mergeStages() {
+const MergeStage& mergeStageOf(const ShardSet& shards) {
   static constexpr std::array kStages{
       MergeStage{"vpl-place", placedKind, mergePlaced},
       MergeStage{"vpl-estimate", [](const ShardRun&) { return OutputKind::Lit; }, mergeEstimated},
       MergeStage{"vpl-render", [](const ShardRun&) { return OutputKind::Exr; }, mergeRendered,
                  true}};
-  return kStages;
+  const std::string tool = fieldOf<std::string>(shards.whole().run, "tool");
+  const auto found = std::ranges::find(kStages, tool, &MergeStage::tool);
+  if (found == kStages.end())
+    throw InputError("shards of " + tool + " cannot be merged; name those of another stage");
+  return *found;
 }
 
 Values optionsOf(const ShardRun& whole, const StageSpec& spec, Values (*resolved)(const Given&)) {

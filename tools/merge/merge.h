@@ -1,8 +1,6 @@
-// Merges the shards of a run into the output of the whole run. Each stage is an entry of
-// mergeStages().
+// Merges the shards of a run into the output of the whole run.
 #pragma once
 
-#include <span>
 #include <string_view>
 #include <vector>
 
@@ -27,7 +25,8 @@ struct MergeStage {
                                  Summary& summary);
   bool image = false;  // the product is an image, for which --png is allowed
 };
-std::span<const MergeStage> mergeStages();
+// The stage that made the shards. Throws InputError if its shards cannot be merged.
+const MergeStage& mergeStageOf(const ShardSet& shards);
 
 // The options of the whole run; `resolved` is resolve() of its stage. Throws InputError if no run
 // can have the options or the record that the shards hold.

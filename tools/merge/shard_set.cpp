@@ -180,6 +180,7 @@ std::ifstream& ShardSet::opened(size_t file) {
 }
 
 std::string ShardSet::read(Record& record) {
+  if (!record.verified) progress_(1);
   record.verified = true;
   return readShardBlock(files_[record.file], opened(record.file), record.block, record.offset);
 }
@@ -211,7 +212,9 @@ void ShardSet::writeTo(AtomicFile& output) {
   for (const fs::path& file : files_) {
     ShardReader reader(file);
     for (size_t b = 0; b < reader.blocks().size(); ++b) {
-      if (reader.blocks()[b].kind == kShardRecord) writer.copy(reader.blocks()[b], reader.read(b));
+      if (reader.blocks()[b].kind != kShardRecord) continue;
+      writer.copy(reader.blocks()[b], reader.read(b));
+      progress_(1);
     }
   }
   writer.finish(textOf(ShardInfo{whole_, processor_, parts_, of_}));

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/progress.h"
 #include "tools/common/stage/shard.h"
 
 namespace bnvpl {
@@ -27,6 +28,9 @@ class ShardSet {
   const ShardParts& parts() const { return parts_; }
   // Throws InputError with the command that makes missing parts.
   void requireComplete() const;
+  size_t records() const { return records_.size(); }
+  // From now on, each record that is read for the first time counts as one unit.
+  void reportTo(ProgressFn progress) { progress_ = std::move(progress); }
   // The command that makes these parts, with further options `more`.
   std::string commandFor(const Shard& shard, const std::string& more = "") const;
 
@@ -68,6 +72,7 @@ class ShardSet {
   std::vector<std::pair<std::string, size_t>> sums_;  // works with sums, and their number of sums
   std::vector<Record> records_;                       // sorted by work and unit
   std::map<size_t, std::ifstream> open_;              // by index of the file
+  ProgressFn progress_;
 };
 
 }  // namespace bnvpl

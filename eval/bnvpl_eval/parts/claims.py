@@ -69,6 +69,7 @@ class Gathers:
             candidates=self.plan["vpls"] * self.plan["candidates_per_vpl"],
             photons=self.plan["photons"],
             spp=self.plan["spp"],
+            estimate=tuple(self.plan.get("estimate", ())),
             render=("--gather", gather, "--compensate", "none", "--fireflies", "keep", *options),
         )
         seeds = range(1, 1 + self.plan["seeds"])

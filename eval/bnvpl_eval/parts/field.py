@@ -72,6 +72,7 @@ class Field:
         return c.but(
             vpls=vpls,
             candidates=vpls * self.size["candidates_per_vpl"],
+            estimate=tuple(self.size.get("estimate", ())),
             render=(*options, "--fireflies", "keep", *kind, *self.size.get("render", ())),
         )
 

@@ -80,7 +80,9 @@ def cpu_s(context: Context, view: View, c: pipeline.Configuration, spp: int) -> 
 
 
 def configuration(context: Context, view: View, gather: str) -> pipeline.Configuration:
+    plan = context.size["gather"]
     return context.configuration(view, "local").but(
-        spp=context.size["gather"]["spp"],
+        spp=plan["spp"],
+        estimate=tuple(plan.get("estimate", ())),
         render=("--gather", gather, "--compensate", "none", "--fireflies", "keep"),
     )

@@ -97,6 +97,24 @@ TEST_F(Strict, ProgressAsJson) {
   EXPECT_GE(last.at("done").get<int>(), 5000);
 }
 
+TEST_F(Strict, ProgressOfAMergeCountsItsRecords) {
+  makeStages(scene_);
+  const std::string render = scene_ + " --integrator path --spp 1 --quiet -o ";
+  succeed("vpl-render", render + path("1.shard") + " --shard 1/2");
+  succeed("vpl-render", render + path("2.shard") + " --shard 2/2");
+  for (const char* output : {"whole.exr", "both.shard"}) {
+    const Outcome merged = tool("vpl-merge", path("1.shard") + " " + path("2.shard") +
+                                                 " --quiet --progress json -o " + path(output));
+    ASSERT_EQ(merged.code, kExitOk) << merged.err;
+    const std::string last = merged.err.substr(merged.err.rfind('{'));
+    const auto json = nlohmann::json::parse(last);
+    EXPECT_EQ(json.at("stage"), "vpl-merge");
+    EXPECT_EQ(json.at("phase"), "records");
+    EXPECT_GT(json.at("total").get<int>(), 1);
+    EXPECT_EQ(json.at("done"), json.at("total"));
+  }
+}
+
 // Every shard repeats the pilots of --method both, and counts them by its share.
 TEST_F(Strict, ProgressOfAShardEndsAtItsShare) {
   makeStages(scene_);

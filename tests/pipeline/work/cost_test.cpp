@@ -66,10 +66,10 @@ class CostRun : public PipelineTest {
   }
   // Each run is so long that its trial is only a part of it.
   void expectAllPredicted(const std::string& scene) const {
-    expectPredicted("vpl-place", scene + " -n 200k -o " + path("candidates.vpl"));
-    expectPredicted("vpl-eliminate", path("candidates.vpl") + " -n 20k -o " + path("vpls.vpl"));
+    expectPredicted("vpl-place", scene + " -n 100k -o " + path("candidates.vpl"));
+    expectPredicted("vpl-eliminate", path("candidates.vpl") + " -n 10k -o " + path("vpls.vpl"));
     expectPredicted("vpl-estimate",
-                    scene + " " + path("vpls.vpl") + " --photons 1M -o " + path("lit.vpl"));
+                    scene + " " + path("vpls.vpl") + " --photons 500k -o " + path("lit.vpl"));
     expectPredicted("vpl-render",
                     scene + " " + path("lit.vpl") + " --size 128x96 --spp 4 -o " + path("i.exr"));
   }
