@@ -30,6 +30,7 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "eval"))
 from bnvpl_eval import images, statistics  # noqa: E402
 from bnvpl_eval.guard import output_guard  # noqa: E402
+from bnvpl_eval.scene_files import digest  # noqa: E402
 
 FIGURES = output_guard.json_kind(
     "figures of gather.py",
@@ -58,10 +59,14 @@ class Bench:
         self.work: Path = options.work
         self.bin: Path = options.bin
         options.work.mkdir(parents=True, exist_ok=True)
+        tools = ("vpl-place", "vpl-eliminate", "vpl-estimate")
+        # Files of another build may differ.
+        self.build = digest(b"".join((options.bin / tool).read_bytes() for tool in tools))
 
     def lit(self, scene: str, count: int) -> Path:
         toml = ROOT / "scenes" / scene / "scene.toml"
-        parts = [self.work / f"{scene}.{count}.{stage}.vpl" for stage in ("c", "v", "l")]
+        made = f"{scene}.{count}.{self.options.photons}.{self.build}"
+        parts = [self.work / f"{made}.{stage}.vpl" for stage in ("c", "v", "l")]
         if not parts[2].is_file():
             run([self.bin / "vpl-place", toml, "-n", 10 * count, "-o", parts[0], "--quiet"])
             run([self.bin / "vpl-eliminate", parts[0], "-n", count, "-o", parts[1], "--quiet"])

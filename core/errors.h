@@ -42,6 +42,7 @@ class MemoryError : public std::runtime_error {
 };
 class OutputError : public std::runtime_error {
  public:
+  using std::runtime_error::runtime_error;
   OutputError(const fs::path& file, const std::string& problem)
       : std::runtime_error(file.string() + ": " + problem) {}
 };

@@ -38,6 +38,7 @@ PARTS = [
 ALONE = ["field"]
 NEED_METHODS = {"energy", "reference_quality"}
 JUDGE_NOTHING = {"pictures"}
+NEED_MAIN_VIEWS = {"scatter", "gather", "claims", "convergence", "sensitivity"}
 
 
 def processor() -> str:
@@ -164,6 +165,11 @@ def main() -> int:
             raise SystemExit(
                 f"eval: no {kind} '{unknown[0]}'; settings.toml has {', '.join(sorted(there))}"
             )
+    if "main" not in size["views"] and (without := NEED_MAIN_VIEWS & set(parts)):
+        raise SystemExit(
+            f"eval: {', '.join(sorted(without))} have rows of main views alone; add 'main' to "
+            "--views, or name other --parts"
+        )
     chosen = []
     for scene in (scene for scene in scenes if scene.id in wanted):
         if scene.available:

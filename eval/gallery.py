@@ -79,7 +79,7 @@ SCENES = (
     Scene("veach-mis", "Veach's plates", "veach-mis/veach-mis.pbrt", aspect=(4, 3)),
     Scene(
         "material-testball",
-        "Material test ball (Mareck)",
+        "Material test ball (Bitterli)",
         "material-testball/material-testball.pbrt",
     ),
     Scene(

@@ -75,9 +75,9 @@ def errors(rows: Rows) -> Rows:
 
 
 def scatters(rows: Rows) -> Rows:
-    """Mean ratio and relMSE of the default, of thesis scatter, and of the thesis as written."""
+    """Mean ratio and relMSE of the default, of thesis scatter, and with VPLs that shine from their sites."""
     head = ["scene"]
-    for method in ("both (default)", "even", "thesis to the letter"):
+    for method in ("both (default)", "even", "thesis' scatter and sites"):
         head += [f"{method}: mean ratio", "relMSE"]
     table = [head]
     for scene, _, mean, relmse in columns(rows, "scene", "scatter", "mean ratio", "relMSE")[1:]:

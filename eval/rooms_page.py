@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 """Makes tables and a picture from docs/rooms.csv, which rooms.py writes.
 
-They are the tables of docs/lab/evaluation.md named rooms and guided, and the picture rooms.svg
-of docs/results.md.
+They are the tables of docs/lab/evaluation.md named rooms and guided, the picture rooms.svg and
+the first sentences about it in docs/results.md, and the range in README.md.
 """
 
 import csv
 import re
 import sys
+import textwrap
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,9 @@ from bnvpl_eval.output import plt
 
 RESULTS = write_docs.DOCS / "rooms.csv"
 PAGE = write_docs.DOCS / "lab/evaluation.md"
+MEASURES = {"relmse": "relMSE", "rmse": "RMSE", "smape": "SMAPE", "flip": "FLIP"}
+APART = 1.25  # ratio of two times that are not equal
+HALF = 0.45  # share of indirect light that is about half of the image
 OTHERS = {
     "path": "path tracer",
     "light": "light tracer",
@@ -43,6 +47,12 @@ def add(rows: list[dict[str, Any]]) -> None:
     """Adds rows, which replace older ones with the same values in the columns KEY."""
     of = {tuple(str(row[key]) for key in KEY): row for row in (*read(), *rows)}
     output.write_csv(RESULTS, list(of.values()))
+
+
+def at_equal_time(row: dict[str, Any]) -> bool:
+    """Whether the other's run took about our time, or its time is not known."""
+    its = row.get("its_cpu_s")
+    return not its or APART > float(its) / float(row["cpu_s"]) > 1.0 / APART
 
 
 def ratio(row: dict[str, Any], column: str) -> float:
@@ -162,6 +172,80 @@ def guided_table(rows: list[dict[str, Any]]) -> str:
     return "\n".join(lines)
 
 
+def spelled(value: float) -> str:
+    """Two significant digits, with commas between thousands."""
+    return f"{float(f'{value:.2g}'):,g}" if value < 1e6 else two(value)
+
+
+def span(values: list[float]) -> str:
+    return f"{spelled(min(values))} to {spelled(max(values))}"
+
+
+def exceptions(found: list[tuple[str, str, float]]) -> str:
+    """Where (room, measure, ratio) is behind; nothing where it is nowhere."""
+    behind = [f"{name} of {room} ({two(r)})" for room, name, r in found if r < 1.0]
+    return f" but in {', '.join(behind)}" if behind else ""
+
+
+def facts(rows: list[dict[str, Any]]) -> str:
+    """What the ratios of the full images say."""
+    by = {
+        (setting, beside): [
+            row
+            for row in rows
+            if (row["setting"], row["light"], row["beside"]) == (setting, "full", beside)
+        ]
+        for setting, beside in (("default", "path"), ("draft", "path"), ("default", "guided"))
+    }
+
+    def all_ratios(setting: str) -> list[tuple[str, str, float]]:
+        return [
+            (row["room"], name, ratio(row, column))
+            for row in by[setting, "path"]
+            for column, name in MEASURES.items()
+        ]
+
+    paths = {row["room"]: row for row in by["default", "path"]}
+    guided = [
+        (row["room"], name, float(paths[row["room"]][f"its_{m}"]) / float(row[f"its_{m}"]))
+        for row in by["default", "guided"]
+        for m, name in MEASURES.items()
+    ]
+    half, less = (
+        [ratio(row, "relmse") for row in paths.values() if (share(row) >= HALF) == much]
+        for much in (True, False)
+    )
+    draft = by["draft", "path"]
+    lines = (
+        f"- Where indirect light is about half of the image or more, the path tracer has {span(half)} "
+        f"times the relMSE, else {span(less)} times.",
+        f"- Ours is ahead of the path tracer in relMSE, RMSE, SMAPE and FLIP in all views"
+        f"{exceptions(all_ratios('default'))}. So is the preset `draft`"
+        f"{exceptions(all_ratios('draft'))}, by {two(min(ratio(r, 'relmse') for r in draft))} times "
+        f"in relMSE and {two(min(ratio(r, 'flip') for r in draft))} in FLIP at least.",
+        f"- Guided paths are ahead of the path tracer{exceptions(guided)}.",
+    )
+    return "\n".join(
+        textwrap.fill(line, 118, subsequent_indent="  ", break_on_hyphens=False) for line in lines
+    )
+
+
+def share(row: dict[str, Any]) -> float:
+    return float(row["indirect_share"])
+
+
+def put_range(page: Path, rows: list[dict[str, Any]]) -> None:
+    """The range of the path tracer's relMSE over ours, within a sentence of the page."""
+    found = [
+        ratio(row, "relmse")
+        for row in rows
+        if (row["setting"], row["light"], row["beside"]) == ("default", "full", "path")
+    ]
+    text = f"<!-- range -->{span(found)} times our relMSE in {len(found)} views<!-- end -->"
+    old = page.read_text()
+    output.write_page(page, re.sub(r"<!-- range -->.*?<!-- end -->", text, old, flags=re.S))
+
+
 def put(page: Path, name: str, table: str) -> None:
     """Replaces the text between the page's comments of that name."""
     text = f"<!-- {name} -->\n{table}\n<!-- end of {name} -->"
@@ -214,11 +298,13 @@ def plot(rows: list[dict[str, Any]], path: Path) -> None:
 
 
 def write() -> None:
-    rows = [row for row in read() if row["path_length"] == "0"]
+    rows = [row for row in read() if row["path_length"] == "0" and at_equal_time(row)]
     put(PAGE, "rooms", table(rows))
     if guided := guided_table(rows):
         put(PAGE, "guided", guided)
     results_page.write()
+    put(write_docs.DOCS / "results.md", "facts", facts(rows))
+    put_range(write_docs.DOCS.parent / "README.md", rows)
     plot(rows, write_docs.DOCS / "images/rooms.svg")
 
 

@@ -31,6 +31,9 @@ def parse_arguments() -> argparse.Namespace:
     ids = ", ".join(scene.id for scene in SCENES)
     parser.add_argument("rooms", nargs="*", help=f"{ids}; all unless given")
     parser.add_argument("--bin", type=Path, default=settings.ROOT / "build/release/bin")
+    parser.add_argument(
+        "--commit", help="of the tools in --bin; that of the working tree unless given"
+    )
     parser.add_argument("--cache", type=Path, default=settings.ROOT / "build/eval/cache")
     parser.add_argument("--preset", choices=sorted(SETTINGS), default="default")
     parser.add_argument("--width", type=int, default=160, help="pixels")
@@ -43,7 +46,7 @@ def parse_arguments() -> argparse.Namespace:
 
 def means(tools: Runner, scene: Scene, given: argparse.Namespace) -> tuple[list[float], ...]:
     """Means of the indirect light by VPLs, and by guided paths."""
-    place, eliminate, estimate, _ = SETTINGS[given.preset]
+    place, eliminate, estimate, (_, _, *render) = SETTINGS[given.preset]  # without its --spp
     placed = runs.placed(tools, scene.path, *scene.options, *place)["candidates.vpl"]
     kept = runs.kept(tools, placed, *eliminate)["vpls.vpl"]
 
@@ -54,7 +57,7 @@ def means(tools: Runner, scene: Scene, given: argparse.Namespace) -> tuple[list[
         image = runs.rendered(tools, scene.path, lit, *film, *more)["image.exr"]
         return float(images.read(image).mean())
 
-    ours = [mean(1 + seed, given.spp) for seed in range(given.runs)]
+    ours = [mean(1 + seed, given.spp, *render) for seed in range(given.runs)]
     guided = [
         mean(101 + seed, given.guided_spp, "--integrator", "guided")
         for seed in range(given.guided_runs)
@@ -67,7 +70,7 @@ def main() -> int:
     rooms = chosen(given.rooms, "run_means")
     if given.runs < 2 or given.guided_runs < 2:
         sys.exit("run_means: a deviation needs two runs; raise --runs and --guided-runs")
-    tools = Runner(given.bin.resolve(), given.cache.resolve(), True, beginning(None))
+    tools = Runner(given.bin.resolve(), given.cache.resolve(), True, beginning(given.commit))
     print("| room | mean | least and largest | deviation of a run | standard error of guided |")
     print("|---|---|---|---|---|", flush=True)
     for scene in rooms:

@@ -43,7 +43,7 @@ LABELS = {
     "uniform": "uniform (thesis)",
     "local": "local (ours)",
     "even": "the thesis' scatter",
-    "literal": "the thesis to the letter",
+    "literal": "the thesis' scatter and sites",
     "path": "path tracer",
 }
 LABEL_SIZE = 15  # pixels

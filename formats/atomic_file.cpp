@@ -207,12 +207,24 @@ void AtomicFile::fail(int error) const {
                                  "; the old file, if any, is unchanged");
 }
 
+// The file comes last, so that a new one has its companions.
+void OutputSet::replaceAll() {
+  for (auto file = files_.rbegin(); file != files_.rend(); ++file) {
+    try {
+      file->replace();
+    } catch (const OutputError& e) {
+      if (file == files_.rbegin()) throw;
+      throw OutputError(std::string(e.what()) + "; its companions that came before it are new");
+    }
+  }
+}
+
 void OutputSet::commit() {
   for (AtomicFile& file : files_) file.sync();
   std::vector<fs::path> all;
   for (const AtomicFile& file : files_) all.push_back(folderOf(file.place_));
   const FolderLocks locks(all);
-  for (auto file = files_.rbegin(); file != files_.rend(); ++file) file->replace();
+  replaceAll();
   std::set<fs::path> folders;
   for (const AtomicFile& file : files_) {
     if (folders.insert(folderOf(file.place_)).second) syncFolder(file.place_);

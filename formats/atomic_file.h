@@ -59,6 +59,7 @@ class OutputSet {
   void commit();
 
  private:
+  void replaceAll();
   std::deque<AtomicFile> files_;  // a deque does not move its elements
 };
 

@@ -1,6 +1,7 @@
 """Options of the programs that list the commands of a scene: scenes, counts, views, shards."""
 
 import argparse
+import itertools
 import os
 import pathlib
 import re
@@ -199,6 +200,16 @@ def words_of(text: str, option: str) -> list[str]:
         return shlex.split(text)
     except ValueError as problem:
         refuse(f"{option} {text!r}: {problem}; check its quotes")
+
+
+def value_in(words: list[str], name: str) -> str:
+    """The value of an option in the words of a command line; empty if it is not there."""
+    for word, after in itertools.pairwise([*words, ""]):
+        if word == name:
+            return after
+        if word.startswith(f"{name}="):
+            return word.partition("=")[2]
+    return ""
 
 
 def shell_command(words: list[str]) -> str:

@@ -16,9 +16,11 @@ cppcheck --quiet --std=c++20 --language=c++ --library=googletest \
   --enable=warning,style,performance,portability --suppressions-list=scripts/cppcheck.supp \
   --error-exitcode=1 -I . core formats images scene spatial transport tools tests bench fuzz
 
-# This makes compile_commands.json. Clang cannot read GCC's precompiled headers.
+# This makes compile_commands.json, of which each file needs an entry of its own, and the headers
+# that the build makes. Clang cannot read GCC's precompiled headers.
 cmake --preset release -B build/analyse -DBNVPL_TESTS=ON -DBNVPL_BENCH=ON \
-  -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON >/dev/null
+  -DCMAKE_UNITY_BUILD=OFF -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON >/dev/null
+cmake --build build/analyse --target bnvpl_build_id >/dev/null
 files=("$@")
 ((${#files[@]})) || mapfile -t files < <(git ls-files '*.cpp')
 echo "clang-tidy: ${#files[@]} files"

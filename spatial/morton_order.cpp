@@ -15,6 +15,11 @@ uint32_t spreadBits(uint32_t v) {
   return (v | v << 2) & 0x09249249u;
 }
 
+// Coordinates that floats cannot scale are in cell 0.
+uint32_t cellOf(float scaled) {
+  return scaled >= 0.0f && scaled < 1024.0f ? static_cast<uint32_t>(scaled) : 0;
+}
+
 }  // namespace
 
 std::vector<uint32_t> mortonOrder(std::span<const Vec3> points) {
@@ -25,9 +30,8 @@ std::vector<uint32_t> mortonOrder(std::span<const Vec3> points) {
   std::vector<uint64_t> keys(points.size());  // Morton code and index, so that all keys differ
   parallelFor(points.size(), 4096, [&](size_t i) {
     const Vec3 cell = (points[i] - bounds.lower) * cellsPerUnit;
-    const uint32_t code = spreadBits(static_cast<uint32_t>(cell.x)) << 2 |
-                          spreadBits(static_cast<uint32_t>(cell.y)) << 1 |
-                          spreadBits(static_cast<uint32_t>(cell.z));
+    const uint32_t code = spreadBits(cellOf(cell.x)) << 2 | spreadBits(cellOf(cell.y)) << 1 |
+                          spreadBits(cellOf(cell.z));
     keys[i] = uint64_t{code} << 32 | i;
   });
   tbb::parallel_sort(keys.begin(), keys.end());

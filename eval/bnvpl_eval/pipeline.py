@@ -20,7 +20,7 @@ METHODS = {
     "local": "blue noise, local density (ours)",
     "paths": "ours, light gathered by paths",
     "even": "ours, but the thesis' scatter",
-    "literal": "thesis to the letter",
+    "literal": "thesis' scatter and sites",
 }
 ELIMINATE = {
     "random": ("--method", "random"),

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from urllib.parse import unquote
 
-NAMING = (".toml", ".pbrt", ".pbrt.gz", ".gltf", ".obj", ".mtl")  # formats that name other files
+NAMING = (".toml", ".pbrt", ".pbrt.gz", ".gltf", ".glb", ".obj", ".mtl")  # formats that name other files
 LONGEST_NAME = 1024  # characters; what is longer holds data
 
 
@@ -28,6 +28,8 @@ def _names(file: Path, data: bytes) -> Iterator[str]:
             yield from (" ".join(words[first:]) for first in range(len(words)))
     else:
         yield from re.findall(r'"([^"\n]*)"', text)
+        if file.suffix == ".toml":  # whose literal strings have other marks
+            yield from re.findall(r"'([^'\n]*)'", text)
 
 
 def _named_by(file: Path, data: bytes, scene: Path) -> Iterator[Path]:

@@ -43,6 +43,10 @@ class FittingSamples(unittest.TestCase):
 
         self.assertAlmostEqual(cpu_s(equal_samples.fitting_spp(cpu_s, 2, 12.0)), 12.0, delta=0.6)
 
+    def test_samples_that_become_dearer_fill_the_time(self) -> None:
+        times = {4: 16.6, 8: 45.0, 5: 23.0, 6: 31.0}
+        self.assertEqual(equal_samples.fitting_spp(times.__getitem__, 4, 29.0), 6)
+
     def test_noise_of_two_short_trials_does_not_lead_to_endless_runs(self) -> None:
         ran: list[int] = []
 

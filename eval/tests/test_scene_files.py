@@ -60,6 +60,11 @@ class SceneFiles(unittest.TestCase):
             self.write("picture.png", "beside the scene")
             self.assertEqual(scene_key(scene), before)
 
+    def test_literal_strings(self) -> None:
+        scene = self.write("scene.toml", "[[mesh]]\nfile = '.\\room.obj'\n")
+        self.write("room.obj", "v 0 0 0\n")
+        self.expect_in_key(scene, "room.obj")
+
     def test_what_a_pbrt_file_includes(self) -> None:
         scene = self.write("scene.pbrt", 'Include "geometry/all.pbrt.gz"\n')
         self.write(
@@ -72,6 +77,11 @@ class SceneFiles(unittest.TestCase):
         scene = self.write("room.gltf", '{"buffers": [{"uri": "my%20room.bin"}]}')
         self.write("my room.bin", "bytes")
         self.expect_in_key(scene, "my room.bin")
+
+    def test_what_a_binary_gltf_names(self) -> None:
+        scene = self.write("room.glb", 'glTF\2\0\0\0{"images": [{"uri": "wall.png"}]}')
+        self.write("wall.png", "bytes")
+        self.expect_in_key(scene, "wall.png")
 
     def test_files_that_name_each_other_end(self) -> None:
         scene = self.write("a.pbrt", 'Include "b.pbrt"\n')

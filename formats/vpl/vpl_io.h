@@ -17,8 +17,8 @@ VplTable readVpl(const fs::path& file);
 
 // The same, but throws InputError before reading the columns if the file is not of the stage
 // `expected`. The message names the tool that made this file, if its provenance does, and the tools
-// that make the required one.
-VplTable readVpl(const fs::path& file, VplStage expected);
+// that make the required one: `makers`, or all of them.
+VplTable readVpl(const fs::path& file, VplStage expected, std::string_view makers = {});
 
 // Reads header and directory, and verifies them against the real file size, without the content.
 VplHeader readVplHeader(const fs::path& file);

@@ -72,25 +72,28 @@ VplTable makeTable(const InputFile& in, Bytes file, Opening opening) {
   return table;
 }
 
-[[noreturn]] void failStage(InputFile& in, const VplHeader& header, VplStage expected) {
+[[noreturn]] void failStage(InputFile& in, const VplHeader& header, VplStage expected,
+                            std::string_view makers) {
   std::string provenance(header.provenanceBytes, '\0');
   in.read(provenance.data(), provenance.size());
   const std::string maker = makerOf(provenance);
   // Lit VPLs can also come from vpl-place: then no stage was forgotten.
   const bool done = header.stage == VplStage::Lit && expected == VplStage::Eliminated;
   throw InputError(
-      in.path(), "is of stage " + std::string(stageName(header.stage)) +
-                     (maker.empty() ? "" : " (by " + maker + ")") +
-                     (done ? ": its VPLs have their flux; pass it to vpl-render"
-                           : ", stage " + std::string(stageName(expected)) +
-                                 " is needed; make it with " + std::string(stageTools(expected))));
+      in.path(),
+      "is of stage " + std::string(stageName(header.stage)) +
+          (maker.empty() ? "" : " (by " + maker + ")") +
+          (done ? ": its VPLs have their flux; pass it to vpl-render"
+                : ", stage " + std::string(stageName(expected)) + " is needed; make it with " +
+                      std::string(makers.empty() ? stageTools(expected) : makers)));
 }
 
-VplTable readTable(const fs::path& path, std::optional<VplStage> expected) {
+VplTable readTable(const fs::path& path, std::optional<VplStage> expected,
+                   std::string_view makers = {}) {
   InputFile in(path);
   Opening opening = readOpening(in);
   const VplHeader& header = opening.header;
-  if (expected && header.stage != *expected) failStage(in, header, *expected);
+  if (expected && header.stage != *expected) failStage(in, header, *expected, makers);
   const auto buffer = std::make_unique_for_overwrite<std::byte[]>(in.size());
   const uint64_t read = opening.layout.provenanceOffset;
   std::memcpy(buffer.get(), &header, sizeof(header));
@@ -111,7 +114,9 @@ VplHeader readVplHeader(const fs::path& file) {
 
 VplTable readVpl(const fs::path& file) { return readTable(file, std::nullopt); }
 
-VplTable readVpl(const fs::path& file, VplStage expected) { return readTable(file, expected); }
+VplTable readVpl(const fs::path& file, VplStage expected, std::string_view makers) {
+  return readTable(file, expected, makers);
+}
 
 std::string_view stageName(VplStage stage) {
   switch (stage) {

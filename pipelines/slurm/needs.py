@@ -47,15 +47,24 @@ def film_of(view: str, scene_film: str) -> str:
     return f"{film.get('width', width)}x{film.get('height', height)}"
 
 
+def camera_of(seen: dict[str, Any], wanted: str) -> Any:
+    """The scene's camera of this name or number; the first unless there is one."""
+    cameras = seen["cameras"]
+    for number, camera in enumerate(cameras):
+        if wanted in (camera["name"], str(number)):
+            return camera
+    return cameras[0]
+
+
 def pixels_of(seen: dict[str, Any], options: argparse.Namespace) -> int:
     """Pixels of the largest film."""
     words = stage_options.words_of(options.render_flags, "--render-flags")
-    if given := re.search(r"--size[= ](\S+)", " ".join(words)):
-        films = [given[1]]
+    if size := stage_options.value_in(words, "--size"):
+        films = [size]
     elif options.views:
         films = [film_of(view, seen["cameras"][0]["film"]) for view in options.views]
     else:
-        films = [seen["cameras"][0]["film"]]
+        films = [camera_of(seen, stage_options.value_in(words, "--camera"))["film"]]
     sizes = [re.fullmatch(r"(\d+)x(\d+)", film) for film in films]
     return max((int(size[1]) * int(size[2]) for size in sizes if size), default=0)
 

@@ -36,9 +36,16 @@ def _option(o: Mapping[str, Any]) -> Option:
     return Option(o["name"], o["kind"], o["type"], o["repeat"])
 
 
-@functools.cache
 def spec_of(executable: str, command: str = "") -> Spec:
-    """What the tool's --help-json tells; with a command of vpl-inspect, what both take."""
+    """What the tool's --help-json tells; with a command of vpl-inspect, what both take.
+
+    Raises CalledProcessError, with what the tool says, where it does not start.
+    """
+    return _spec_of(executable, command, os.stat(executable).st_mtime_ns)
+
+
+@functools.cache
+def _spec_of(executable: str, command: str, built_ns: int) -> Spec:
     done = subprocess.run([executable, "--help-json"], capture_output=True, text=True, check=True)
     tool = json.loads(done.stdout)
     commands = [c for c in tool.get("commands", []) if c["tool"].endswith(f" {command}")]
@@ -57,7 +64,7 @@ def _text(value: Any) -> str:
 
 def _texts(name: str, option: Option, value: Any) -> list[str]:
     """The values of an option as on a command line, mostly one."""
-    if isinstance(value, bool) and option.kind == "switch":
+    if isinstance(value, bool | np.bool_) and option.kind == "switch":
         return ["on" if value else "off"]
     if isinstance(value, Mapping):
         value = [f"{key}={_text(of)}" for key, of in value.items()]
@@ -80,7 +87,7 @@ def _texts(name: str, option: Option, value: Any) -> list[str]:
 def _words(name: str, option: Option, value: Any) -> list[str]:
     if option.kind != "flag":
         return [w for text in _texts(name, option, value) for w in (f"--{option.name}", text)]
-    if not isinstance(value, bool):
+    if not isinstance(value, bool | np.bool_):
         raise TypeError(f"{name} is a flag: True or False, not {value!r}")
     return [f"--{option.name}"] if value else []
 

@@ -105,7 +105,11 @@ def run(
     """
     executable = find_tool(tool)
     command = str(arguments[0]) if tool == "vpl-inspect" and arguments else ""
-    spec = spec_of(executable, command)
+    try:
+        spec = spec_of(executable, command)
+    except subprocess.CalledProcessError as failed:
+        message = str(failed.stderr).strip()
+        raise ToolError(failed.returncode, message, [executable, "--help-json"]) from failed
     if options.get("estimate"):
         options["json"] = True
     shown = ["--quiet"] if progress is None else ["--quiet", "--progress", "json"]

@@ -180,6 +180,18 @@ class Running(TestFiles):
             bnvpl.run("vpl-inspect", "info", self.lit, photons=1)
 
 
+class ToolsThatDoNotStart(TestFolder):
+    def test_their_message_is_that_of_the_error(self) -> None:
+        tool = self.folder / "vpl-render"
+        tool.write_text("#!/bin/sh\necho 'libembree3.so: not found' >&2\nexit 127\n")
+        tool.chmod(0o755)
+        found = mock.patch.dict(os.environ, BNVPL_BIN=str(self.folder))
+        missing = self.assertRaisesRegex(bnvpl.ToolError, "libembree3.so: not found")
+        with found, missing as failed:
+            bnvpl.run("vpl-render", SCENE)
+        self.assertEqual(failed.exception.code, 127)
+
+
 class Keywords(unittest.TestCase):
     def setUp(self) -> None:
         self.spec = options.spec_of(str(BIN / "vpl-render"))
@@ -195,6 +207,8 @@ class Keywords(unittest.TestCase):
         self.assertEqual(self.words(define=defined), "--define A=b --define C=d")
         self.assertEqual(self.words(quiet=True, estimate=False, png=None), "--quiet")
         self.assertEqual(self.words(size=np.array([8, 6]), spp=np.array(3)), "--size 8x6 --spp 3")
+        given = {"quiet": np.bool_(True), "adaptive": np.bool_(False), "estimate": np.bool_(False)}
+        self.assertEqual(self.words(**given), "--quiet --adaptive off")
         with self.assertRaisesRegex(TypeError, "size is an array of 2 dimensions, not of one"):
             self.words(size=np.array([[8, 6]]))
         with self.assertRaisesRegex(TypeError, "quiet is a flag: True or False, not 3"):

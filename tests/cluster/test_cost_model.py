@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Tests the cost model of the stages: its fit, its shards, its scenes and what is stored of it."""
 
+import argparse
 import json
 import re
 import sys
@@ -114,6 +115,18 @@ class ModelTest(unittest.TestCase):
             with self.assertRaises(SystemExit) as refused:
                 needs.film_of(str(view), "640x480")
             self.assertRegex(str(refused.exception), f"{view}: .*; supply a TOML file")
+
+    def test_the_film_is_that_of_the_camera_or_of_the_size(self) -> None:
+        seen = {"cameras": [{"name": "Room", "film": "64x48"}, {"name": "a b", "film": "320x200"}]}
+        for flags, pixels in (
+            ("", 64 * 48),
+            ("--camera 1", 320 * 200),
+            ("--spp 4 --camera='a b'", 320 * 200),
+            ("--camera 'a b' --size 10x20", 200),
+            ("--camera Hall", 64 * 48),
+        ):
+            options = argparse.Namespace(render_flags=flags, views=[])
+            self.assertEqual(needs.pixels_of(seen, options), pixels, flags)
 
     def test_scenes_are_cut_and_not_changed(self) -> None:
         def area(obj: Path) -> float:

@@ -124,6 +124,24 @@ TEST(Interrupt, OneRequestMayComeAsSeveralSignals) {
   EXPECT_EXIT(run(), KilledBySignal(SIGINT), "^tool: interrupted \\(SIGINT\\); the work is saved");
 }
 
+// Linux repeats it every CPU second behind the soft limit.
+TEST(Interrupt, TheLimitOfCpuTimeIsOneRequestHoweverOftenItComes) {
+  const auto run = [] {
+    catchInterrupts("tool");
+    try {
+      const DeferInterrupts defer;
+      std::raise(SIGXCPU);
+      ::usleep(1'100'000);
+      std::raise(SIGXCPU);
+      if (interrupted()) throw Interrupted("the work is saved");
+    } catch (const Interrupted& reason) {
+      endInterrupted(reason);
+    }
+  };
+  EXPECT_EXIT(run(), KilledBySignal(SIGXCPU),
+              "^tool: interrupted \\(SIGXCPU\\); the work is saved");
+}
+
 TEST(Interrupt, WhatNobodyActedUponEndsTheToolAfterTheLoop) {
   const auto run = [] {
     catchInterrupts("tool");

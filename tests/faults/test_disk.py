@@ -302,6 +302,7 @@ class FullDisks(Workbench):
                 self.assertEqual(set(states.values()), {"old"}, what)
             if call == "rename":
                 self.assertEqual(states[command.outputs[0]], "old", what)
+                self.assertEqual(at > 1, "companions that came before it are new" in result.err)
             if "was replaced" not in result.err:
                 self.assertEqual(states[command.outputs[0]], "old", what)
         self.fail(f"{command.name}: more than 999 calls of {call}")

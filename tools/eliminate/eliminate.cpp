@@ -12,13 +12,14 @@ namespace {
 
 constexpr auto kOptions = optionTable(kEliminateCountOption);
 
-void requireEnough(size_t candidates, uint64_t count) {
+void requireEnough(const EliminateMethod& method, size_t candidates, uint64_t count) {
   if (candidates > INT32_MAX) throw InputError("more than 2^31 - 1 candidates; place fewer");
   if (count <= candidates) return;
   const std::string cure = count > INT32_MAX / 20
                                ? "keep fewer"
-                               : "rerun vpl-place -n " + std::to_string(count * 20) +
-                                     " (20 to 40 x " + std::to_string(count) + ")";
+                               : "rerun " + std::string(method.madeBy) + " -n " +
+                                     std::to_string(count * 20) + " (20 to 40 x " +
+                                     std::to_string(count) + ")";
   throw InputError("asked to keep " + std::to_string(count) + " of " + std::to_string(candidates) +
                    " candidates; " + cure);
 }
@@ -54,7 +55,7 @@ VplTable eliminate(const VplTable& candidates, const Values& options, const Acce
                    const LightSet* lights, const ProgressFn& progress) {
   const EliminateMethod& method = eliminateMethod(options);
   requireSceneAsNeeded(method, accel && lights);
-  requireEnough(candidates.size(), options[kEliminateCountOption]);
+  requireEnough(method, candidates.size(), options[kEliminateCountOption]);
   const EliminateResult kept = method.run({candidates, accel, lights, progress}, options);
   VplTable table = keepRows(candidates, kept.rows);
   if (table.stage == VplStage::Candidates) table.stage = VplStage::Eliminated;

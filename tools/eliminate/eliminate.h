@@ -41,6 +41,8 @@ struct EliminateMethod {
   EliminateResult (*run)(const EliminateInputs&, const Values&);
   VplStage takes = VplStage::Candidates;  // stage of the input table
   bool needsScene = false;
+  std::string_view madeBy = "vpl-place";  // the command that makes the input table
+  double bytesPerCandidate = 120;         // a lower bound of the memory; measured: 140 to 150
 };
 // Defined in the build folder by cmake/Methods.cmake, from the folders beside this file.
 std::span<const EliminateMethod* const> eliminateMethods();

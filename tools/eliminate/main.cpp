@@ -12,8 +12,6 @@
 namespace bnvpl {
 namespace {
 
-constexpr double kBytesPerCandidate = 120;  // a lower bound; measured: 140 to 150
-
 // The scene, for methods that need it.
 struct World {
   World(const SceneOptions& options, Processor processor, const fs::path& input, uint64_t hash)
@@ -28,14 +26,15 @@ struct World {
 int runEliminate(const StageRequest& request, const fs::path& input, const ToolOptions& tool) {
   StageRun run("vpl-eliminate", request, tool);
   const Values options = resolve(eliminateSpec(), request.given);
-  requireSceneAsNeeded(eliminateMethod(options), !request.scene.file.empty());
+  const EliminateMethod& method = eliminateMethod(options);
+  requireSceneAsNeeded(method, !request.scene.file.empty());
   run.used.reads("candidates", input).reads("--scene", request.scene.file);
-  const bool lit = eliminateMethod(options).takes == VplStage::Lit;
+  const bool lit = method.takes == VplStage::Lit;
   run.used.writes("-o", request.output, {lit ? OutputKind::Lit : OutputKind::Eliminated});
   run.checkFiles();
   if (!run.predictsCost())
-    requireMemoryFor(input, kBytesPerCandidate, "place fewer with vpl-place -n");
-  const VplTable candidates = readVpl(input, eliminateMethod(options).takes);
+    requireMemoryFor(input, method.bytesPerCandidate, "place fewer with vpl-place -n");
+  const VplTable candidates = readVpl(input, method.takes, method.madeBy);
   std::optional<World> world;
   if (!request.scene.file.empty())
     world.emplace(request.scene, tool.processor, input, candidates.sceneHash);

@@ -7,6 +7,22 @@
 
 namespace bnvpl {
 
+namespace {
+
+// The scene of the run. Options that it does not take any more are a change of its file.
+Scene sceneOf(const ShardRun& whole) {
+  const SceneOptions options = sceneOptionsOf(fieldOf<Json>(whole.sources, "scene"));
+  try {
+    return loadSceneFor(options, Warnings::Hold);
+  } catch (const UsageError& e) {
+    throw InputError(options.file, "has changed since the shards were made from it (" +
+                                       std::string(e.what()) +
+                                       "); put it back, or make them again");
+  }
+}
+
+}  // namespace
+
 std::vector<fs::path> mergeEstimated(ShardSet& shards, const MergeOutput& output, OutputSet& files,
                                      Summary& summary) {
   const ShardRun& whole = shards.whole();
@@ -15,8 +31,7 @@ std::vector<fs::path> mergeEstimated(ShardSet& shards, const MergeOutput& output
   const fs::path input = fieldOf<std::string>(whole.sources, "vpls");
   requireMemoryFor(input, bytesPerEstimated(options, 0.0), "keep fewer with vpl-eliminate -n");
   const VplTable vpls = readVpl(input, VplStage::Eliminated);
-  const Scene scene =
-      loadSceneFor(sceneOptionsOf(fieldOf<Json>(whole.sources, "scene")), Warnings::Hold);
+  const Scene scene = sceneOf(whole);
   requireSameInput(input, vpls.checksum, whole, "vpls");
   requireSameInput(scene.name(), scene.contentHash, whole, "scene");
   const Accelerator accel(scene, processorOf(whole.run));

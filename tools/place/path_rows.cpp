@@ -69,7 +69,7 @@ PlaceResult collectRows(const std::string& scene, const JoinedRows& whole,
   Wave traced, next;
   trace(traced);
   while (found < count) {
-    if (chunks * kPathsPerChunk >= maxPathsFor(count)) {
+    if (chunks >= maxChunksFor(count)) {
       join(traced);
       failTooFew(scene, joined.soFar(), joined.rows(), count);
     }

@@ -34,7 +34,7 @@ struct JoinedRows {
   bool lit = false;  // whether the rows have flux
 };
 
-// Traces and joins chunks until there are `count` rows. Throws InputError where maxPathsFor(count)
+// Traces and joins chunks until there are `count` rows. Throws InputError where maxChunksFor(count)
 // paths do not yield them.
 PlaceResult collectRows(const std::string& scene, const JoinedRows& whole,
                         const ProgressFn& progress, const TracePaths& tracePaths);

@@ -45,8 +45,6 @@ class ShardTrace {
   const Shard& shard() const { return controls_.shard; }
   uint64_t unit(uint64_t ahead = 0) const { return shard().unit(chunks_ + ahead); }
   uint64_t rowsOfPart() const { return static_cast<uint64_t>(std::ceil(part_)); }
-  // Paths that all shards together have traced when each has as many chunks as this one.
-  uint64_t paths() const { return chunks_ / shard().parts() * shard().of * kPathsPerChunk; }
   const PlaceResult& soFar() const { return result_; }
   // Whether its rows are fewer than chance explains where all shards together find enough.
   bool hasTooFew() const {
@@ -60,12 +58,16 @@ class ShardTrace {
     return std::min(wanted_ + kDeviations * std::sqrt(squares_), max_) -
            static_cast<double>(result_.rows);
   }
+  // Those of the next wave; 0 where the shard has all that a join takes.
   size_t chunksLeft() const {
+    const uint64_t end = maxChunksFor(static_cast<uint64_t>(max_));
     const double each = result_.rows > 0
                             ? static_cast<double>(result_.rows) / static_cast<double>(chunks_)
                             : static_cast<double>(kPathsPerChunk);
-    return static_cast<size_t>(
+    auto left = static_cast<size_t>(
         std::clamp(std::ceil(rowsLeft() / each), 1.0, static_cast<double>(kChunksPerWave)));
+    while (left > 0 && unit(left - 1) >= end) --left;
+    return left;
   }
   void take(const PathRows& chunk) { take(chunk, encode(chunk, unit() * kPathsPerChunk)); }
   void pause() const {
@@ -101,12 +103,13 @@ PlaceResult traceShard(const std::string& scene, uint64_t count, double spare,
   if (progress) progress(trace.soFar().rows);
   Wave wave;
   while (trace.rowsLeft() > 0.0) {
-    if (trace.paths() >= maxPathsFor(count)) {
+    const size_t chunks = trace.chunksLeft();
+    if (chunks == 0) {
       if (!trace.hasTooFew()) break;  // no join needs more; others may have found more
       failTooFew(scene, trace.soFar(), trace.soFar().rows, trace.rowsOfPart());
     }
     traceWave(
-        wave, trace.chunksLeft(), [&](size_t k) { return trace.unit(k); }, tracePaths);
+        wave, chunks, [&](size_t k) { return trace.unit(k); }, tracePaths);
     const uint64_t before = trace.soFar().rows;
     for (size_t k = 0; k < wave.size() && trace.rowsLeft() > 0.0; ++k) trace.take(wave[k]);
     if (progress) progress(trace.soFar().rows - before);
@@ -119,9 +122,9 @@ PlaceResult joinShards(const JoinedRows& whole, const ShardSource& source,
                        const std::function<void(uint64_t unit)>& endedEarly) {
   RowJoin joined(whole);
   for (uint64_t unit = 0; !joined.full(); ++unit) {
-    const auto bytes = source.record(kWork, unit);
-    if (!bytes && unit * kPathsPerChunk >= maxPathsFor(whole.count))
+    if (unit >= maxChunksFor(whole.count))
       failTooFew("the shards", joined.soFar(), joined.rows(), whole.count);
+    const auto bytes = source.record(kWork, unit);
     if (!bytes) endedEarly(unit);
     PathRows chunk = decodeRows(*bytes, unit * kPathsPerChunk);
     if (!chunk.rows.position.empty() && chunk.rows.flux.empty() == whole.lit)

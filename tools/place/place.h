@@ -76,8 +76,8 @@ const StageSpec& placeSpec();
 const PlaceMethod& placeMethod(const Values& options);
 
 // A pure function of the scene, its views and the options: neither threads nor interruptions change
-// a byte. Throws InputError where the scene yields too few VPLs in maxPathsFor(count) paths.
-// `progress` counts VPLs.
+// a byte. Throws InputError where the scene yields too few VPLs in maxChunksFor(count) chunks of
+// paths. `progress` counts VPLs.
 PlaceResult place(const PlaceInputs& in, const Values& options, const ProgressFn& progress = {},
                   const WorkControls& controls = {});
 

@@ -37,7 +37,11 @@ void dropCutPath(const PathRows& chunk, size_t take, PlaceResult& result) {
 
 }  // namespace
 
-uint64_t maxPathsFor(uint64_t count) { return kFreePaths + kPathsPerCandidate * count; }
+uint64_t maxChunksFor(uint64_t count) {
+  const uint64_t paths = kFreePaths + kPathsPerCandidate * count;
+  const uint64_t perWave = kChunksPerWave * kPathsPerChunk;
+  return (paths + perWave - 1) / perWave * kChunksPerWave;
+}
 
 [[noreturn]] void failTooFew(const std::string& scene, const PlaceResult& r, uint64_t found,
                              uint64_t count) {

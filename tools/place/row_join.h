@@ -12,9 +12,9 @@
 namespace bnvpl {
 
 inline constexpr uint64_t kChunksPerWave = 64;
-// Number of paths over all views after which placement fails if it has not found `count`
-// candidates.
-uint64_t maxPathsFor(uint64_t count);
+// Number of chunks over all views, in whole waves, after which placement fails if it has not found
+// `count` candidates.
+uint64_t maxChunksFor(uint64_t count);
 // Throws InputError with the number of paths in `r` and how they ended.
 [[noreturn]] void failTooFew(const std::string& scene, const PlaceResult& r, uint64_t found,
                              uint64_t count);

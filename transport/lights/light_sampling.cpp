@@ -224,8 +224,11 @@ PhotonStart LightSet::emitFromInfinity(const Light& light, const PrimarySample& 
 
 bool LightSet::photonsReach(size_t index, Vec3 towards, Vec3 from) const {
   const Light& light = lights_[index];
-  const bool finite = light.area || light.spec.pointOrSpot();
-  return finite || scene_.bounds.isHitBy(from, towards);
+  if (light.area || light.spec.pointOrSpot()) return true;
+  // Rounding puts points of the outermost faces beside the box. Photons start farther out.
+  const Vec3 rounding(0x1p-11f * scene_.bounds.diagonal());
+  const Bounds around{scene_.bounds.lower - rounding, scene_.bounds.upper + rounding};
+  return around.isHitBy(from, towards);
 }
 
 PrimarySample LightSet::invertEmission(size_t index, Point2 place, Vec3 towards, Vec3 from) const {

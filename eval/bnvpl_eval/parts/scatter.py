@@ -47,9 +47,8 @@ def run(context: Context) -> None:
         table(
             "scatter",
             "The thesis' scatter against the guarded one",
-            "'ours, but the thesis' scatter' changes --method alone; the thesis to the letter "
-            "also spreads VPLs "
-            "uniformly, shines from where VPLs stand and has no near-field rays. "
+            "'ours, but the thesis' scatter' changes --method alone; that with sites also spreads "
+            "VPLs uniformly, shines from where they stand and has no near-field rays. "
             f"{context.size['scatter']['seeds']} seeds.",
             COLUMNS,
             rows,

@@ -151,6 +151,19 @@ std::string_view withoutComment(std::string_view rest, std::span<char> text) {
   return rest.substr(0, at);
 }
 
+// Blanks out slashes at the end of corners: tinyobj would read the next corner's number behind
+// them.
+void dropLastSlashes(std::string_view rest, std::span<char> text) {
+  char* const first = text.data() + (rest.data() - text.data());
+  bool atEnd = true;
+  for (size_t i = rest.size(); i-- > 0;) {
+    if (atEnd && first[i] == '/')
+      first[i] = ' ';
+    else
+      atEnd = isBlank(first[i]);
+  }
+}
+
 // Ranges of one text are scanned in parallel: nothing but the characters of the own range is
 // written.
 void scan(std::span<char> text, Stretch& s) {
@@ -171,6 +184,7 @@ void scan(std::span<char> text, Stretch& s) {
       char* first = text.data() + (name.data() - text.data());
       makeOneWord(first, first + name.size());
     }
+    if (keyword == "f") dropLastSlashes(rest, text);
     const bool unnamed = keyword == "usemtl" && rest.empty();
     if (length > 0 && !note(keyword, rest, s)) text[at + begin] = '#';
     // tinyobj ignores a usemtl without a name, but reports a group.

@@ -38,7 +38,7 @@ void readCrop(const Param& window, bool inPixels, Pixels& out) {
   take(n[2], n[3], out.film.height, out.top, out.bottom);
 }
 
-Pixels pixelsOf(const Description& description) {
+Pixels pixelsOf(const Description& description, Notes& notes) {
   const Params& p = description.film.params;
   Pixels out;
   Film& film = out.film;
@@ -49,8 +49,11 @@ Pixels pixelsOf(const Description& description) {
     readCrop(*crop, true, out);
   if (const Param* crop = p.find("cropwindow", {ParamType::Float}, "four floats"))
     readCrop(*crop, false, out);  // it counts where both are given
-  p.ignore({"filename", "savefp16", "diagonal", "maxcomponentvalue", "quickrender", "nbuckets",
-            "lambdamin", "lambdamax", "coordinatesystem"});
+  if (const Place* at = p.placeOf("maxcomponentvalue");
+      at && p.number("maxcomponentvalue", kMax) < kMax)
+    notes.add(*at, "'maxcomponentvalue' is ignored: no sample is clamped");
+  p.ignore({"filename", "savefp16", "diagonal", "quickrender", "nbuckets", "lambdamin", "lambdamax",
+            "coordinatesystem"});
   return out;
 }
 
@@ -117,12 +120,16 @@ void readLens(const Entity& entity, const Affine& worldFromCamera, Notes& notes,
                along = lengthOf(direction(worldFromCamera, {0, 0, 1}));
   if (std::fabs(across - up) > 1e-3 * across)
     notes.add(*p.placeOf("lensradius"), "an oval lens is rendered as a circle of the same area");
-  const double lens = radius * std::sqrt(across * up), focus = distance * along;
+  const double lens = radius * std::sqrt(across * up);
+  double focus = distance * along;
+  if (focus > kMaxLensLength) {
+    notes.add(*p.placeOf("focaldistance"), "a focus beyond 1e9 in the world is put there");
+    focus = kMaxLensLength;
+  }
   if (!(lens <= kMaxLensLength)) failAt(*p.placeOf("lensradius"), "the lens is too large");
-  if (!(focus >= kMinFocusDistance && focus <= kMaxLensLength)) {
+  if (!(focus >= kMinFocusDistance)) {
     const Place* given = p.placeOf("focaldistance");
-    failAt(given ? *given : entity.place,
-           "'focaldistance' must be above 0, and at most 1e9 in the world");
+    failAt(given ? *given : entity.place, "'focaldistance' must be above 0");
   }
   camera.lensRadius = static_cast<float>(lens);
   camera.focusDistance = static_cast<float>(focus);
@@ -157,7 +164,7 @@ Sensor sensorOf(const Description& description, Notes& notes) {
 
 void buildCamera(const Description& description, Notes& notes, SceneBuilder& builder) {
   const Entity& entity = description.camera;
-  const Pixels pixels = pixelsOf(description);
+  const Pixels pixels = pixelsOf(description, notes);
   if (entity.type != "perspective") {
     notes.add(entity.place, "camera '" + entity.type +
                                 "' is not read; a perspective one of 90 "

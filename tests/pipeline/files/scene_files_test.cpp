@@ -199,5 +199,20 @@ TEST_F(SceneFilesOfOthers, TheFieldOfViewTakesItsLimits) {
        {"my room.toml:7: [camera]: 'vertical_fov_deg' is 179.91, outside 0.001 to 179.9"});
 }
 
+// The scene takes the definition of its shards no longer; vpl-merge has no option to leave out.
+using ChangedScene = PipelineTest;
+TEST_F(ChangedScene, IsNamedByTheMergeOfItsShards) {
+  fs::copy(BNVPL_SOURCE "/scenes/cornell", at("room"), fs::copy_options::recursive);
+  write("scene.toml", "[[mesh]]\nfile = \"${ROOM}/scene.toml\"\n");
+  const std::string scene = path("scene.toml"), defined = scene + " --define ROOM=room --quiet ";
+  succeed("vpl-place", defined + "-n 2k -o " + path("c.vpl"));
+  succeed("vpl-eliminate", path("c.vpl") + " -n 20 --quiet -o " + path("v.vpl"));
+  succeed("vpl-estimate",
+          defined + path("v.vpl") + " --photons 2k --shard 1/1 -o " + path("l.shard"));
+  write("scene.toml", "[[mesh]]\nfile = \"room/scene.toml\"\n");
+  fail("vpl-merge", path("l.shard") + " -o " + path("x.vpl"), kExitInput,
+       {"scene.toml: has changed since the shards were made", "make them again"});
+}
+
 }  // namespace
 }  // namespace bnvpl

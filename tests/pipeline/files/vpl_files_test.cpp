@@ -106,6 +106,11 @@ TEST_F(VplFiles, TheWrongStageIsReportedWithItsMakerAndTheRightTools) {
        {"is of stage lit (by vpl-eliminate --method rejection): its VPLs have", "vpl-render"});
   fail("vpl-estimate", scene_ + " " + path("lit.vpl") + " -o " + path("x.vpl"), kExitInput,
        {"is of stage lit (by vpl-estimate"});
+  const std::string reject = " --method rejection --scene " + scene_ + " -o " + path("x.vpl");
+  fail("vpl-eliminate", path("candidates.vpl") + " -n 9" + reject, kExitInput,
+       {"stage lit is needed; make it with vpl-place --method light"});
+  fail("vpl-eliminate", path("light.vpl") + " -n 900" + reject, kExitInput,
+       {"rerun vpl-place --method light -n 18000"});
   fail("vpl-render", scene_ + " " + path("vpls.vpl") + " -o " + path("x.exr"), kExitInput,
        {"is of stage eliminated (by vpl-eliminate",
         "make it with vpl-estimate or a vpl-place --method that lights VPLs"});

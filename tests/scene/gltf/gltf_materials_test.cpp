@@ -199,6 +199,11 @@ TEST_F(GltfMaterials, ImagesComeFromFilesAndDataUris) {
   EXPECT_EQ(countContaining(gone.warnings, "gone.png: no such texture"), 1u);
   const Scene damaged = load(with("data:image/png;base64,AAAA"));
   EXPECT_EQ(countContaining(damaged.warnings, "#/images/0"), 1u) << joined(damaged.warnings);
+  // Images of other types may stand beside those that are read.
+  for (const std::string type : {"image/webp", "image/ktx2", "image/png;name=wall"}) {
+    const Scene strange = load(with("data:" + type + ";base64,AAAA"));
+    EXPECT_EQ(countContaining(strange.warnings, "#/images/0"), 1u) << joined(strange.warnings);
+  }
 }
 
 TEST_F(GltfMaterials, OneSetOfTextureCoordinatesCounts) {

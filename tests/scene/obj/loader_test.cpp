@@ -180,6 +180,34 @@ TEST_F(Loader, MirrorAndGlassByTheirFields) {
     EXPECT_EQ(glass.phong().transmission, Vec3(0.5f, 0.6f, 0.7f));
     EXPECT_EQ(glass.phong().diffuse, Vec3());
   }
+  // Maya writes its opaque materials so.
+  const std::string maya = "Kd 0.5 0.4 0.3\nKa 0 0 0\nTf 1 1 1\nNi 1.00\nillum ";
+  for (const char* illum : {"4", "9"}) {
+    EXPECT_FALSE(material(maya + illum + "\n").phong().glass) << illum;
+    EXPECT_EQ(material(maya + illum + "\n").phong().diffuse, Vec3(0.5f, 0.4f, 0.3f));
+    EXPECT_TRUE(std::holds_alternative<MetallicRoughnessModel>(
+        material(maya + illum + "\nPr 0.3\n").model));
+  }
+  EXPECT_TRUE(material(maya + "7\n").phong().glass);
+}
+
+// tinyobj would take the next corner's number for what is missing behind a slash.
+TEST_F(Loader, SlashesAtTheEndOfACornerNameNothing) {
+  const std::string begin =
+      "mtllib paint.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nvn 0 1 0\nvn 1 0 0\n"
+      "vt 0 0\nvt 1 0\nvt 0 1\nusemtl paint\n";
+  const std::string mtl = "newmtl paint\nKd 0.5 0.5 0.5\n";
+  const auto corners = [&](const std::string& face) {
+    const Triangle t = loadMesh(begin + face + "\n", mtl).triangles.at(0);
+    return std::pair(t.normal, t.uv);
+  };
+  for (const auto& [face, plain] : {std::pair("f 1/ 2/ 3/", "f 1 2 3"),
+                                    {"f 1// 2// 3//", "f 1 2 3"},
+                                    {"f 1/1/ 2/2/ 3/3/", "f 1/1 2/2 3/3"},
+                                    {"f 1//2 2//1/ 3//3", "f 1//2 2//1 3//3"}})
+    EXPECT_EQ(corners(face), corners(plain)) << face;
+  EXPECT_NE(corners("f 1/1 2/2 3/3"), corners("f 1 2 3"));
+  EXPECT_NE(corners("f 1//1 2//2 3//3"), corners("f 1 2 3"));
 }
 
 }  // namespace

@@ -96,11 +96,12 @@ TEST_F(Mtl, OfOtherProgramsIlluminationTellsWhatIsGlass) {
 TEST_F(Mtl, OpacityIsAMaskAndSaysSo) {
   for (const auto& [field, text] : {std::pair("d 0.3", "d: below an opacity of 0.5"),
                                     {"d 0.6", "d: from an opacity of 0.5"},
+                                    {"d 0", "d: below an opacity of 0.5"},
                                     {"Tr 0.4", "Tr: from an opacity of 0.5"}}) {
     const Scene s = paint("newmtl paint\nKd 0.5 0.5 0.5\n" + std::string(field) + "\n");
     EXPECT_EQ(countContaining(s.warnings, text), 1u) << field << joined(s.warnings);
   }
-  for (const char* field : {"d 1", "d 0", "Tr 0"}) {
+  for (const char* field : {"d 1", "Tr 0"}) {
     const Scene s = paint("newmtl paint\nKd 0.5 0.5 0.5\n" + std::string(field) + "\n");
     EXPECT_EQ(countContaining(s.warnings, "opacity"), 0u) << field << joined(s.warnings);
   }
@@ -129,8 +130,29 @@ TEST_F(Mtl, TrIsOneMinusD) {
   ASSERT_TRUE(std::holds_alternative<MixModel>(of(s).model));
   EXPECT_FLOAT_EQ(std::get<MixModel>(of(s).model).amount.value, 0.2f);
   EXPECT_EQ(countContaining(s.warnings, "Tr: light goes straight through"), 1u);
-  for (const std::string metal : {"", "Pr 0.1\n"})
-    EXPECT_TRUE(of(paint("newmtl paint\nKd 1 1 1\n" + metal + "Tr 1\n")).masked()) << metal;
+}
+
+// MeshLab wrote Tr 1 for opaque surfaces.
+TEST_F(Mtl, TrOneAloneIsOpaqueAndDZeroIsNotThere) {
+  for (const std::string metal : {"", "Pr 0.1\n"}) {
+    const Scene opaque = paint("newmtl paint\nKd 1 1 1\n" + metal + "Tr 1\n");
+    EXPECT_FALSE(of(opaque).masked()) << metal;
+    EXPECT_EQ(countContaining(opaque.warnings, "Tr 1 counts as opaque"), 1u) << metal;
+    for (const char* gone : {"d 0\n", "d 0\nTr 1\n"}) {
+      const Scene none = paint("newmtl paint\nKd 1 1 1\n" + metal + gone);
+      EXPECT_TRUE(of(none).masked()) << metal << gone;
+      EXPECT_EQ(countContaining(none.warnings, "surface is not there"), 1u) << metal << gone;
+    }
+  }
+}
+
+// tinyobj gives its default factor to the first material alone.
+TEST_F(Mtl, AMapWithoutKdHasTheSameFactorInEachMaterial) {
+  writeImage("r.tga", {255, 0, 0, 255}, {255, 0, 0, 255});
+  const Scene first = paint("newmtl paint\nmap_Kd r.tga\n");
+  const Scene second = paint("newmtl other\nKd 0.5 0.5 0.5\nnewmtl paint\nmap_Kd r.tga\n");
+  EXPECT_EQ(of(first).phong().diffuse, Vec3(0.6f));
+  EXPECT_EQ(of(second).phong().diffuse, Vec3(0.6f));
 }
 
 // Blender omits the factor beside a map.

@@ -83,7 +83,7 @@ TEST_F(PbrtSyntax, UnknownThingsAreWarningsByNameAndLine) {
       "Sampler \"x\" \"float y\" 1\nWobble \"x\" \"float y\" [1 2] 3 true\nWorldBegin\n"
       "Shape \"torus\" \"float r\" 1\nShape \"torus\" \"float r\" 1\n"
       "Shape \"sphere\" \"float colour\" 3\n"
-      "LightSource \"laser\"\nOption \"bool z\" true\n");
+      "LightSource \"laser\"\n");
   const std::string all = joined(scene.warnings);
   for (const char* part : {"scene.pbrt:2:1: directive 'Wobble' is unknown",
                            "scene.pbrt:4:1: shape 'torus' is not read; it is left out (and 1 more)",
@@ -91,7 +91,39 @@ TEST_F(PbrtSyntax, UnknownThingsAreWarningsByNameAndLine) {
                            "scene.pbrt:7:1: light 'laser' is not read"})
     EXPECT_NE(all.find(part), std::string::npos) << part << " not in\n" << all;
   EXPECT_EQ(countContaining(scene.warnings, "Sampler"), 0u);
-  EXPECT_EQ(countContaining(scene.warnings, "Option"), 0u);
+}
+
+TEST_F(PbrtSyntax, AnOptionHasANameAndOneValue) {
+  for (const char* option : {"\"seed\" 0", "\"rendercoordsys\" \"world\"", "\"bool z\" true",
+                             "\"disablepixeljitter\" true", "\"string z\" [\"a\"]"}) {
+    const Scene scene =
+        loadPbrt("Option " + std::string(option) + "\nWorldBegin\nShape \"sphere\"\n");
+    EXPECT_GT(scene.triangles.size(), 0u) << option;
+    EXPECT_TRUE(scene.warnings.empty()) << option << joined(scene.warnings);
+  }
+  expectError("Option \"seed\"", "1:14", {"needs a value"});
+}
+
+TEST_F(PbrtSyntax, ACommentEndsAtACarriageReturn) {
+  const Scene two = loadPbrt("WorldBegin\r# a lamp\rShape \"sphere\"\r# more\r\nShape \"disk\"\r");
+  const Scene one = loadPbrt("WorldBegin\nShape \"sphere\"\n");
+  EXPECT_GT(two.triangles.size(), one.triangles.size());
+  expectError("WorldBegin\r\n# a\r\n\r\nShape \"plymesh\"", "4:1", {"filename"});
+  expectError("WorldBegin\r# a\r\rShape \"plymesh\"", "4:1", {"filename"});
+}
+
+TEST_F(PbrtSyntax, NumbersWithoutLimitAreTaken) {
+  const Scene scene = loadPbrt(
+      "Film \"rgb\" \"float maxcomponentvalue\" [ 3.402823e38 ]\n"
+      "Camera \"perspective\" \"float lensradius\" 0.1 \"float focaldistance\" 1e12\n"
+      "WorldBegin\nShape \"sphere\" \"float phimax\" 400\n");
+  EXPECT_EQ(countContaining(scene.warnings, "maxcomponentvalue"), 0u) << joined(scene.warnings);
+  EXPECT_EQ(countContaining(scene.warnings, "a focus beyond 1e9"), 1u) << joined(scene.warnings);
+  EXPECT_EQ(scene.camera.focusDistance, 1e9f);
+  const Scene clamped =
+      loadPbrt("Film \"rgb\" \"float maxcomponentvalue\" 10\nWorldBegin\nShape \"sphere\"\n");
+  EXPECT_EQ(countContaining(clamped.warnings, "scene.pbrt:1:12: "), 1u) << joined(clamped.warnings);
+  EXPECT_EQ(countContaining(clamped.warnings, "'maxcomponentvalue' is ignored"), 1u);
 }
 
 TEST_F(PbrtSyntax, TransformsApplyInTheirOrder) {

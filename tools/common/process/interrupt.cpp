@@ -60,7 +60,9 @@ void endAtOnce(int signal) {
 
 // One request to stop may arrive as several signals: Ctrl-C reaches a tool and Make, which then
 // sends SIGTERM. Only the same signal, kOneRequestNs or more after the first, is another request.
+// The kernel repeats SIGXCPU every second, which is none.
 bool isAnotherRequest(int signal) {
+  if (signal == SIGXCPU) return false;
   struct timespec now {};
   ::clock_gettime(CLOCK_MONOTONIC, &now);
   const int64_t nowNs = int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;

@@ -47,6 +47,10 @@ EliminateResult run(const EliminateInputs& in, const Values& options) {
 
 }  // namespace
 
-extern const EliminateMethod method{"random", "a random subset, for comparison", kOptions, run};
+extern const EliminateMethod method{.name = "random",
+                                    .summary = "a random subset, for comparison",
+                                    .options = kOptions,
+                                    .run = run,
+                                    .bytesPerCandidate = 80};
 
 }  // namespace bnvpl::methods::eliminate::random

@@ -154,11 +154,13 @@ EliminateResult run(const EliminateInputs& in, const Values& options) {
 }  // namespace
 
 extern const EliminateMethod method{
-    "rejection",
-    "VPLs of vpl-place --method light, accepted by their contribution to the image; about -n",
-    kOptions,
-    run,
-    VplStage::Lit,
-    /*needsScene=*/true};
+    .name = "rejection",
+    .summary =
+        "VPLs of vpl-place --method light, accepted by their contribution to the image; about -n",
+    .options = kOptions,
+    .run = run,
+    .takes = VplStage::Lit,
+    .needsScene = true,
+    .madeBy = "vpl-place --method light"};
 
 }  // namespace bnvpl::methods::eliminate::rejection

@@ -48,6 +48,13 @@ std::string decodeData(const fs::path& file, const std::string& pointer, const s
   return {bytes.begin(), bytes.end()};
 }
 
+// The bytes of an image, whatever the type: one that is not read may stand beside one that is.
+std::string decodeImage(const fs::path& file, const std::string& pointer, const std::string& uri) {
+  const size_t data = uri.find(";base64,");
+  const std::string type = "data:application/octet-stream";
+  return decodeData(file, pointer, data == uri.npos ? uri : type + uri.substr(data));
+}
+
 // The object of an extension of `part`, or null.
 const Json* extensionOf(const Json& part, const char* name) {
   const auto extensions = part.find("extensions");
@@ -195,7 +202,7 @@ void GltfModel::openImages(const Json& json) {
       fail(pointer, std::string("has neither a uri nor a bufferView") + kExportAgain);
     } else if (isDataUri(*uri)) {
       images_.push_back({embedded, std::make_shared<const std::string>(
-                                       decodeData(file_, pointer + "/uri", *uri))});
+                                       decodeImage(file_, pointer + "/uri", *uri))});
     } else {
       images_.push_back({pathOf(*uri, pointer + "/uri"), nullptr});
     }

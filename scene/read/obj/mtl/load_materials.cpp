@@ -17,11 +17,10 @@ constexpr float kMirrorExponent = 1e4f;
 // Phong exponents above this are taken for it: floats hold no narrower lobe.
 constexpr float kMaxExponent = 1e6f;
 constexpr double kMaxIor = 100.0;
+constexpr float kDiffuseOfMap = 0.6f;  // that of tinyobj for the first material of a library
 
 Vec3 toVec3(const tinyobj::real_t* v) { return fromOrigin({v[0], v[1], v[2]}, {}); }
 Vec3 nonNegative(Vec3 c) { return isFinite(c) ? max(c, Vec3{}) : Vec3{}; }
-
-bool isGlass(int illum) { return illum == 4 || illum == 6 || illum == 7 || illum == 9; }
 
 void readGlass(const tinyobj::material_t& in, const MtlKeys& keys, Vec3 ks,
                const std::string& where, SceneBuilder& builder, PhongModel& m) {
@@ -49,19 +48,20 @@ void readOpaque(const tinyobj::material_t& in, const MtlKeys& keys, Vec3 ks, Mat
 void readPhong(const tinyobj::material_t& in, const MtlKeys& keys, const MtlMaps& maps,
                const std::string& where, SceneBuilder& builder, Material& m) {
   PhongModel& p = m.phong();
-  p.diffuse = nonNegative(toVec3(in.diffuse));
+  const bool mapAlone = !keys.has("Kd") && !in.diffuse_texname.empty();
+  p.diffuse = mapAlone ? Vec3(kDiffuseOfMap) : nonNegative(toVec3(in.diffuse));
   const Vec3 ks = nonNegative(toVec3(in.specular));
   const auto exponent = static_cast<float>(in.shininess);
   p.exponent = std::isfinite(exponent) ? std::clamp(exponent, 0.0f, kMaxExponent) : 0.0f;
-  if (isGlass(in.illum)) return readGlass(in, keys, ks, where, builder, p);
+  if (isGlass(in, keys)) return readGlass(in, keys, ks, where, builder, p);
   readOpaque(in, keys, ks, m);
   m.opacity = std::isfinite(in.dissolve) ? static_cast<float>(in.dissolve) : 1.0f;
   const bool stated = keys.has("d") || keys.has("Tr");  // Tr is 1 - d
-  if (stated && m.opacity > 0.0f && m.opacity < 1.0f) {
+  if (stated && m.opacity < 1.0f) {
     builder.warn(where + (keys.has("d") ? "d" : "Tr") +
                  (m.opacity < 0.5f ? ": below an opacity of 0.5 the surface is not there"
                                    : ": from an opacity of 0.5 on the surface is opaque") +
-                 "; for glass use illum 4 or a [[material]]");
+                 "; for glass use illum 7 or a [[material]]");
   }
   const float limit = maxComponent(p.diffuse + p.glossy + p.mirror);
   const bool hasMap = !in.diffuse_texname.empty() || !in.specular_texname.empty();
@@ -78,9 +78,19 @@ void greyWithoutColour(const MtlKeys& keys, const std::string& where, SceneBuild
   constexpr std::array<std::string_view, 6> kColours{"Kd",     "map_Kd", "Ks",
                                                      "map_Ks", "Ke",     "map_Ke"};
   if (std::ranges::any_of(kColours, [&](auto key) { return keys.has(key); })) return;
-  if (isGlass(in.illum)) return;
+  if (isGlass(in, keys)) return;
   std::ranges::fill(in.diffuse, 0.5);
   builder.warn(where + "has no colour; it is grey (Kd 0.5)");
+}
+
+// MeshLab (until 2023) and others write Tr 1 for opaque surfaces.
+void opaqueByTr(const MtlKeys& keys, const std::string& where, SceneBuilder& builder,
+                tinyobj::material_t& in) {
+  if (keys.has("d") || !keys.has("Tr") || in.dissolve > 0.0) return;
+  in.dissolve = 1.0;
+  builder.warn(where +
+               "Tr 1 counts as opaque, as programs mean it that take Tr for d; for a "
+               "surface that is not there write d 0");
 }
 
 void readEmission(const tinyobj::material_t& in, const MtlKeys& keys, const MtlMaps& maps,
@@ -142,7 +152,7 @@ void expectTextures(const MaterialSource& from, const tinyobj::material_t& in,
                     SceneBuilder& builder) {
   const MtlMaps maps(from, whereIs(from, in), builder, true);
   const bool facets = from.keys.metallicRoughness();
-  if (!facets && isGlass(in.illum)) return;
+  if (!facets && isGlass(in, from.keys)) return;
   maps.image(in.diffuse_texname, in.diffuse_texopt, true);
   maps.image(in.specular_texname, in.specular_texopt, !facets);
   maps.mask(in.alpha_texname, in.alpha_texopt);
@@ -158,6 +168,7 @@ void expectTextures(const MaterialSource& from, const tinyobj::material_t& in,
 uint32_t addMaterial(const MaterialSource& from, tinyobj::material_t in, SceneBuilder& builder) {
   const std::string where = whereIs(from, in);
   greyWithoutColour(from.keys, where, builder, in);
+  opaqueByTr(from.keys, where, builder, in);
   const MtlMaps maps(from, where, builder, false);
   const bool facets = from.keys.metallicRoughness();
   Material m;
@@ -169,7 +180,7 @@ uint32_t addMaterial(const MaterialSource& from, tinyobj::material_t in, SceneBu
   else
     readPhong(in, from.keys, maps, where, builder, m);
   readEmission(in, from.keys, maps, where, builder, m);
-  if (facets || !isGlass(in.illum)) {
+  if (facets || !isGlass(in, from.keys)) {
     readRelief(in, from.keys, maps, m);
     m.opacityMap = maps.mask(in.alpha_texname, in.alpha_texopt);
   }

@@ -13,6 +13,11 @@ bool MtlKeys::metallicRoughness() const {
   return blender || std::any_of(kKeys.begin(), kKeys.end(), [&](auto key) { return has(key); });
 }
 
+bool isGlass(const tinyobj::material_t& in, const MtlKeys& keys) {
+  const bool refracts = !keys.has("Ni") || in.ior > 1.0;
+  return in.illum == 6 || in.illum == 7 || ((in.illum == 4 || in.illum == 9) && refracts);
+}
+
 std::map<std::string, MtlKeys> mtlKeys(std::string_view library) {
   std::map<std::string, MtlKeys> out;
   MtlKeys unnamed;

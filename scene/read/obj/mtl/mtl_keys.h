@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "scene/read/obj/tinyobj.h"
+
 namespace bnvpl {
 
 struct MtlKeys {
@@ -23,6 +25,10 @@ struct MtlKeys {
   // (docs/scene-format.md).
   bool metallicRoughness() const;
 };
+
+// Whether the material is glass by its `illum` and `Ni`. Maya writes illum 4 and Ni 1 for whatever
+// is opaque, and an index of 1 refracts nothing.
+bool isGlass(const tinyobj::material_t& in, const MtlKeys& keys);
 
 // The keys by material name; the first of a name counts. `library` is made by logicalLines().
 std::map<std::string, MtlKeys> mtlKeys(std::string_view library);

@@ -60,7 +60,7 @@ MetallicRoughnessModel modelOf(const tinyobj::material_t& in, const MtlKeys& key
 // tells which ones are glass.
 float transmissionOf(const tinyobj::material_t& in, const MtlKeys& keys) {
   if (keys.blender) return keys.has("Tf") ? mean(clamped(in.transmittance)) : 0.0f;
-  return in.illum == 4 || in.illum == 6 || in.illum == 7 || in.illum == 9 ? 1.0f : 0.0f;
+  return isGlass(in, keys) ? 1.0f : 0.0f;
 }
 
 // Replaces `amount` of the model by glass of the same roughness.
@@ -104,6 +104,7 @@ void readMetallicRoughness(const tinyobj::material_t& in, const MtlKeys& keys, c
          ": light goes straight through in proportion to 1 - d, but not to shadow rays");
   } else if (stated && in.dissolve <= 0.0f) {
     m.opacity = 0.0f;
+    warn("d 0: the surface is not there");
   }
 }
 

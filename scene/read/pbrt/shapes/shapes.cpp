@@ -1,5 +1,6 @@
 #include "scene/read/pbrt/shapes/shapes.h"
 
+#include <algorithm>
 #include <numbers>
 
 #include "core/files.h"
@@ -13,7 +14,7 @@ namespace bnvpl::pbrt {
 namespace {
 
 double phiMax(const Params& params) {
-  return params.number("phimax", 360.0, 0.0, 360.0) * std::numbers::pi / 180.0;
+  return std::clamp(params.number("phimax", 360.0), 0.0, 360.0) * std::numbers::pi / 180.0;
 }
 
 }  // namespace

@@ -25,10 +25,11 @@ void Lexer::skipBlanks() {
   while (at_ < text_.size()) {
     const char c = text_[at_];
     if (c == '#') {
-      at_ = std::min(text_.find('\n', at_), text_.size());
+      at_ = std::min(text_.find_first_of("\r\n", at_), text_.size());
     } else if (isBlank(c)) {
       ++at_;
-      if (c == '\n') {
+      const bool lineEnds = c == '\n' || (c == '\r' && !text_.substr(at_).starts_with('\n'));
+      if (lineEnds) {
         ++line_;
         lineBegin_ = at_;
       }

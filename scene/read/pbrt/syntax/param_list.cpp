@@ -1,5 +1,6 @@
 #include "scene/read/pbrt/syntax/param_list.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -19,8 +20,6 @@ double numberOf(const Token& token) {
                ? "the file ends where a number is expected"
                : "a number is expected, not '" + std::string(token.text.substr(0, 64)) + "'");
   }
-  if (std::fabs(number) > kMax)
-    failAt(token.place, "the number " + std::string(token.text) + " is beyond 1e30");
   return number;
 }
 
@@ -60,7 +59,7 @@ void addValue(Param& p, const Token& token) {
   if (token.kind == Token::Kind::String || (token.kind == Token::Kind::Word && isTruth(token.text)))
     p.strings.push_back(unescaped(token.text));
   else
-    p.numbers.push_back(numberOf(token));
+    p.numbers.push_back(std::clamp(numberOf(token), -kMax, kMax));  // FLT_MAX: no limit
 }
 
 void checkValues(const Param& p) {
@@ -108,7 +107,12 @@ std::string readString(Tokens& tokens, const char* what) {
 void readNumbers(Tokens& tokens, std::span<double> out) {
   const bool bracket = tokens.peek().kind == Token::Kind::Open;
   if (bracket) tokens.next();
-  for (double& number : out) number = numberOf(tokens.next());
+  for (double& number : out) {
+    const Token token = tokens.next();
+    number = numberOf(token);
+    if (std::fabs(number) > kMax)
+      failAt(token.place, "the number " + std::string(token.text) + " is beyond 1e30");
+  }
   if (!bracket) return;
   const Token close = tokens.next();
   if (close.kind != Token::Kind::Close)

@@ -73,7 +73,7 @@ class Parser {
   void include(const Token& at);
   void import(const Token& at);
   void ignoreOption(const Token& at);
-  void option(const Token&) { readParams(*tokens_, now().colorSpace, notes_); }
+  void option(const Token& at);
   void ignore(const Token&) {}
 
   template <size_t kCount>

@@ -112,6 +112,17 @@ void Parser::objectInstance(const Token& at) {
   out_.instances.push_back({name, now().transform, at.place});
 }
 
+// An option has a name without a type, and one value.
+void Parser::option(const Token&) {
+  string("a name in quotes");
+  Token value = tokens_->next();
+  if (value.kind == Token::Kind::Open)
+    while (value.kind != Token::Kind::Close && value.kind != Token::Kind::End)
+      value = tokens_->next();
+  if (value.kind == Token::Kind::End)
+    failAt(value.place, "the file ends where an Option needs a value");
+}
+
 void Parser::include(const Token& at) {
   const std::string name = string("a file in quotes");
   readFile((folder_ / name).lexically_normal(), &at.place);
