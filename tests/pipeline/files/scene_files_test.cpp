@@ -199,7 +199,7 @@ TEST_F(SceneFilesOfOthers, TheFieldOfViewTakesItsLimits) {
        {"my room.toml:7: [camera]: 'vertical_fov_deg' is 179.91, outside 0.001 to 179.9"});
 }
 
-// The scene takes the definition of its shards no longer; vpl-merge has no option to leave out.
+// The scene does without the definition of its shards; vpl-merge has no option to leave out.
 using ChangedScene = PipelineTest;
 TEST_F(ChangedScene, IsNamedByTheMergeOfItsShards) {
   fs::copy(BNVPL_SOURCE "/scenes/cornell", at("room"), fs::copy_options::recursive);

@@ -96,8 +96,8 @@ TEST_F(PbrtSyntax, UnknownThingsAreWarningsByNameAndLine) {
 TEST_F(PbrtSyntax, AnOptionHasANameAndOneValue) {
   for (const char* option : {"\"seed\" 0", "\"rendercoordsys\" \"world\"", "\"bool z\" true",
                              "\"disablepixeljitter\" true", "\"string z\" [\"a\"]"}) {
-    const Scene scene =
-        loadPbrt("Option " + std::string(option) + "\nWorldBegin\nShape \"sphere\"\n");
+    const Scene scene = loadPbrt("Option " + std::string(option) +
+                                 "\nWorldBegin\nLightSource \"infinite\"\nShape \"sphere\"\n");
     EXPECT_GT(scene.triangles.size(), 0u) << option;
     EXPECT_TRUE(scene.warnings.empty()) << option << joined(scene.warnings);
   }
