@@ -187,41 +187,40 @@ def exceptions(found: list[tuple[str, str, float]]) -> str:
     return f" but in {', '.join(behind)}" if behind else ""
 
 
+def of_full_images(
+    rows: list[dict[str, Any]], setting: str, beside: str
+) -> list[dict[str, Any]]:
+    wanted = (setting, "full", beside)
+    return [row for row in rows if (row["setting"], row["light"], row["beside"]) == wanted]
+
+
 def facts(rows: list[dict[str, Any]]) -> str:
     """What the ratios of the full images say."""
-    by = {
-        (setting, beside): [
-            row
-            for row in rows
-            if (row["setting"], row["light"], row["beside"]) == (setting, "full", beside)
-        ]
-        for setting, beside in (("default", "path"), ("draft", "path"), ("default", "guided"))
-    }
+    default, draft = (of_full_images(rows, setting, "path") for setting in ("default", "draft"))
 
-    def all_ratios(setting: str) -> list[tuple[str, str, float]]:
+    def all_ratios(found: list[dict[str, Any]]) -> list[tuple[str, str, float]]:
         return [
             (row["room"], name, ratio(row, column))
-            for row in by[setting, "path"]
+            for row in found
             for column, name in MEASURES.items()
         ]
 
-    paths = {row["room"]: row for row in by["default", "path"]}
+    paths = {row["room"]: row for row in default}
     guided = [
         (row["room"], name, float(paths[row["room"]][f"its_{m}"]) / float(row[f"its_{m}"]))
-        for row in by["default", "guided"]
+        for row in of_full_images(rows, "default", "guided")
         for m, name in MEASURES.items()
     ]
     half, less = (
-        [ratio(row, "relmse") for row in paths.values() if (share(row) >= HALF) == much]
+        [ratio(r, "relmse") for r in default if (float(r["indirect_share"]) >= HALF) == much]
         for much in (True, False)
     )
-    draft = by["draft", "path"]
     lines = (
-        f"- Where indirect light is about half of the image or more, the path tracer has {span(half)} "
-        f"times the relMSE, else {span(less)} times.",
+        "- Where indirect light is about half of the image or more, the path tracer has "
+        f"{span(half)} times the relMSE, else {span(less)} times.",
         f"- Ours is ahead of the path tracer in relMSE, RMSE, SMAPE and FLIP in all views"
-        f"{exceptions(all_ratios('default'))}. So is the preset `draft`"
-        f"{exceptions(all_ratios('draft'))}, by {two(min(ratio(r, 'relmse') for r in draft))} times "
+        f"{exceptions(all_ratios(default))}. So is the preset `draft`"
+        f"{exceptions(all_ratios(draft))}, by {two(min(ratio(r, 'relmse') for r in draft))} times "
         f"in relMSE and {two(min(ratio(r, 'flip') for r in draft))} in FLIP at least.",
         f"- Guided paths are ahead of the path tracer{exceptions(guided)}.",
     )
@@ -230,17 +229,9 @@ def facts(rows: list[dict[str, Any]]) -> str:
     )
 
 
-def share(row: dict[str, Any]) -> float:
-    return float(row["indirect_share"])
-
-
 def put_range(page: Path, rows: list[dict[str, Any]]) -> None:
     """The range of the path tracer's relMSE over ours, within a sentence of the page."""
-    found = [
-        ratio(row, "relmse")
-        for row in rows
-        if (row["setting"], row["light"], row["beside"]) == ("default", "full", "path")
-    ]
+    found = [ratio(row, "relmse") for row in of_full_images(rows, "default", "path")]
     text = f"<!-- range -->{span(found)} times our relMSE in {len(found)} views<!-- end -->"
     old = page.read_text()
     output.write_page(page, re.sub(r"<!-- range -->.*?<!-- end -->", text, old, flags=re.S))
