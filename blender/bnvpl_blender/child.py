@@ -58,10 +58,43 @@ def exclude_hidden(layer_collection) -> None:
         exclude_hidden(child)
 
 
+def excluded_in(layer_collection):
+    """Excluded collections with their parents, and those of their children that are not."""
+    for child in layer_collection.children:
+        if child.exclude:
+            kept = [inner.collection for inner in child.children if not inner.exclude]
+            yield layer_collection.collection, child.collection, kept
+        yield from excluded_in(child)
+
+
+def unlink_excluded() -> None:
+    """The exporter takes all objects of a scene, and loses the children of those that it lacks."""
+    view_layer = bpy.context.view_layer
+    view_layer.update()
+    shown = set(view_layer.objects)
+    for thing in shown:
+        if thing.parent is None or thing.parent in shown:
+            continue
+        placed = thing.matrix_world.copy()
+        thing.animation_data_clear()
+        thing.constraints.clear()
+        thing.parent = None
+        thing.matrix_world = placed
+    for parent, collection, kept in list(excluded_in(view_layer.layer_collection)):
+        for inner in kept:
+            if inner.name not in parent.children:
+                parent.children.link(inner)
+        if collection.name in parent.children:
+            parent.children.unlink(collection)
+    view_layer.update()
+
+
 def show_as_rendered(scene) -> None:
     """Makes the viewport's visibility and details, which the exporter reads, those of renders."""
     exclude_hidden(bpy.context.view_layer.layer_collection)
-    for thing in scene.objects:
+    render = scene.render
+    render.simplify_subdivision = render.simplify_subdivision_render
+    for thing in bpy.data.objects:
         thing.hide_viewport = thing.hide_render
         if thing.name in bpy.context.view_layer.objects:
             thing.hide_set(False)
@@ -73,6 +106,36 @@ def show_as_rendered(scene) -> None:
             detail = getattr(thing.data, f"render_resolution_{axis}", 0)
             if detail:
                 setattr(thing.data, f"resolution_{axis}", detail)
+
+
+def empty_hidden_instances() -> None:
+    """The exporter takes all objects of an instanced collection, whatever hides them in renders."""
+    scene, shown = bpy.context.scene, set(bpy.context.view_layer.objects)
+    for collection in set(bpy.data.collections) - set(scene.collection.children_recursive):
+        for child in list(collection.children):
+            if child.hide_render:
+                collection.children.unlink(child)
+    for thing in bpy.data.objects:
+        if thing.instance_collection and thing.instance_collection.hide_render:
+            thing.instance_collection = None
+        if not thing.hide_render or thing in shown:
+            continue
+        thing.modifiers.clear()  # an object without data keeps the place of its children
+        if thing.type == "MESH":
+            thing.data = bpy.data.meshes.new("hidden")
+        elif thing.type in ("CURVE", "SURFACE", "FONT"):
+            thing.data = bpy.data.curves.new("hidden", thing.type)
+
+
+def apply_shape_keys() -> None:
+    """The exporter takes a mesh without modifiers as it is, in the shape of its first key."""
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    for thing in bpy.data.objects:
+        if thing.type != "MESH" or thing.data.shape_keys is None:
+            continue
+        shaped = bpy.data.meshes.new_from_object(thing.evaluated_get(depsgraph))
+        thing.modifiers.clear()
+        thing.data = shaped
 
 
 def give_default_material() -> None:
@@ -96,9 +159,23 @@ def export_glb(path: str) -> None:
     bpy.ops.export_scene.gltf(filepath=path, **options)
 
 
+def see_as_surfaces_do(world) -> None:
+    """Makes Light Path tell of light on surfaces, as the camera's rays find the image."""
+    for node in list(world.node_tree.nodes):
+        if node.type != "LIGHT_PATH":
+            continue
+        for output in node.outputs:
+            told = 1.0 if output.name == "Is Diffuse Ray" else 0.0
+            for socket in [link.to_socket for link in output.links]:
+                constant = world.node_tree.nodes.new("ShaderNodeValue")
+                constant.outputs[0].default_value = told
+                world.node_tree.links.new(constant.outputs[0], socket)
+
+
 def render_world(scene, path: str) -> None:
     """Renders the world alone, all around; the image's centre is +y, which is our -z."""
     addon_utils.enable("cycles")
+    see_as_surfaces_do(scene.world)
     alone = bpy.data.scenes.new("bnvpl world")
     alone.world = scene.world
     data = bpy.data.cameras.new("bnvpl world")
@@ -129,6 +206,9 @@ def main() -> None:
     request = json.loads(Path(sys.argv[sys.argv.index("--") + 1]).read_text())
     scene = load(request)
     show_as_rendered(scene)
+    unlink_excluded()
+    empty_hidden_instances()
+    apply_shape_keys()
     give_default_material()
     if request["world"]:
         render_world(scene, request["world"])

@@ -13,7 +13,7 @@ import numpy as np
 
 from .exr_file import ExrError, layer, read_exr
 from .materials import exported_names
-from .scene_data import SceneError, film_size, scene_data
+from .scene_data import SceneError, film_size, render_region, scene_data
 from .settings import TEMPORARY_PREFIX, is_unsaved, kept_folder, request_of, tools_folder
 from .tools import (
     MARK,
@@ -93,8 +93,6 @@ class BNVPL_RenderEngine(bpy.types.RenderEngine):
 
     def _render(self, depsgraph, temporary: Path) -> None:
         scene = depsgraph.scene
-        if scene.render.use_border and scene.render.use_crop_to_border:
-            raise SceneError("cropping to the render region is not supported; switch it off")
         for tool in TOOLS:
             find_tool(tool, tools_folder())
         folder = kept_folder(scene) if scene.bnvpl.keep_files else temporary / "files"
@@ -163,11 +161,13 @@ class BNVPL_RenderEngine(bpy.types.RenderEngine):
         self.update_stats(progress.tool, f"{progress.phase}: {100 * progress.share:.0f} %{left}")
 
     def _take(self, depsgraph, image, passes) -> None:
-        """Gives the image to Blender, whose bottom row comes first."""
+        """Gives the image, or its render region, to Blender, whose bottom row comes first."""
         width, height = film_size(depsgraph.scene)
+        left, right, bottom, top = render_region(depsgraph.scene)
         for _, name, channels, kind, _, _ in passes:
             self.add_pass(name, len(channels), channels, layer=depsgraph.view_layer.name)
-        result = self.begin_result(0, 0, width, height, layer=depsgraph.view_layer.name)
+        size = (right - left, top - bottom)
+        result = self.begin_result(0, 0, *size, layer=depsgraph.view_layer.name)
         taken = result.layers[0].passes
         transparent = depsgraph.scene.render.film_transparent
         alpha = layer(image, "A", "A") if transparent else np.ones((height, width, 1))
@@ -176,7 +176,7 @@ class BNVPL_RenderEngine(bpy.types.RenderEngine):
         for _, name, _, kind, ours, components in passes:
             arrays[name] = _values(image, ours, components, kind)
         for name, values in arrays.items():
-            rows = values[::-1].reshape(width * height, -1)
+            rows = values[::-1][bottom:top, left:right].reshape(size[0] * size[1], -1)
             taken[name].rect = rows.astype(np.float32).tolist()
         self.end_result(result)
 

@@ -7,6 +7,7 @@ Blender's z is up, ours is y: (x, y, z) becomes (x, z, -y), as in glTF.
 from __future__ import annotations
 
 import math
+import struct
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -129,6 +130,12 @@ class Lens:
 def pixels_of(resolution: int, percentage: int) -> int:
     """Pixels of a film's side. Blender divides whole numbers: 29 % of 1600 are 464, not 463.99."""
     return max(1, resolution * percentage // 100)
+
+
+def pixel_at(share: float, pixels: int) -> int:
+    """The pixel at a share of the film's side, which Blender multiplies in single precision."""
+    single = struct.unpack("f", struct.pack("f", share * pixels))[0]
+    return int(single)
 
 
 def camera_section(matrix: Matrix, projection: Matrix, aspect: float, lens: Lens) -> Section:

@@ -13,6 +13,7 @@ from .lamps import (
     area_share,
     camera_section,
     light_section,
+    pixel_at,
     pixels_of,
     viewport_projection,
 )
@@ -47,6 +48,17 @@ def film_size(scene) -> tuple[int, int]:
     render = scene.render
     percentage = render.resolution_percentage
     return pixels_of(render.resolution_x, percentage), pixels_of(render.resolution_y, percentage)
+
+
+def render_region(scene) -> tuple[int, int, int, int]:
+    """Left, right, bottom and top of the pixels that Blender takes; all without a region."""
+    width, height = film_size(scene)
+    render = scene.render
+    if not render.use_border:
+        return 0, width, 0, height
+    columns = [pixel_at(share, width) for share in (render.border_min_x, render.border_max_x)]
+    rows = [pixel_at(share, height) for share in (render.border_min_y, render.border_max_y)]
+    return (*columns, *rows)
 
 
 def _matrix(matrix) -> list[list[float]]:
@@ -154,6 +166,8 @@ def _world_sections(world, told: SceneData) -> None:
     else:
         told.bakes_world = True
         section["image"] = "world.exr"
+        if any(n.type == "LIGHT_PATH" for n in world.node_tree.nodes):
+            told.warnings.append(f"world '{world.name}': the camera sees what lights the scene")
     if section.get("radiance") != [0.0, 0.0, 0.0]:
         told.sections.append(("[[light]]", section))
 

@@ -169,6 +169,22 @@ class BrightnessTest(RenderTest):
         self.expect_like_cycles(scene)
 
 
+    def test_world_that_the_camera_sees_otherwise(self) -> None:
+        """A plain backdrop for the camera does not light the scene."""
+        scene = corner()
+        scene.camera.location = (0, -0.5, 1.5)  # only surfaces are in view
+        scene.camera.rotation_euler = (1.1, 0, 0.675)
+        scene.world = bpy.data.worlds.new("Himmel")
+        scene.world.use_nodes = True
+        tree = scene.world.node_tree
+        path = tree.nodes.new("ShaderNodeLightPath")
+        mix = tree.nodes.new("ShaderNodeMixRGB")
+        mix.inputs[1].default_value, mix.inputs[2].default_value = (1, 1, 1, 1), (0, 0, 9, 1)
+        tree.links.new(path.outputs["Is Camera Ray"], mix.inputs[0])
+        tree.links.new(mix.outputs[0], tree.nodes["Background"].inputs["Color"])
+        self.expect_like_cycles(scene)
+
+
 class FilesTest(RenderTest):
     def kept(self, scene) -> Path:
         scene.bnvpl.keep_files = True
@@ -254,15 +270,123 @@ class FilesTest(RenderTest):
         bpy.data.objects["wall"].hide_viewport = True
         subdivision = bpy.data.objects["floor"].modifiers.new("fine", "SUBSURF")
         subdivision.levels, subdivision.render_levels = 0, 2
-        folder = self.kept(scene)
-        self.render(scene)
-        told = subprocess.run(
-            ["vpl-inspect", "scene", "scene.toml"], cwd=folder, check=True, capture_output=True
-        ).stdout.decode()
+        told = self.told(scene)
         self.assertEqual(told.count("'inner': ("), 2, told)
         self.assertIn("'floor': 32 triangles", told)
         self.assertIn("'wall': 2 triangles", told)
         self.assertNotIn("Wand links", told)
+
+    def told(self, scene) -> str:
+        """What vpl-inspect tells of the exported scene."""
+        folder = self.kept(scene)
+        self.render(scene)
+        return subprocess.run(
+            ["vpl-inspect", "scene", "scene.toml"], cwd=folder, check=True, capture_output=True
+        ).stdout.decode()
+
+    def test_collections_that_are_only_instanced(self) -> None:
+        """Their modifiers are those of renders; what they hide in renders is not exported."""
+        scene = corner()
+        add_lamp("POINT", 200)
+        group, inner = (bpy.data.collections.new(name) for name in ("things", "inner"))
+        group.children.link(inner)
+        for name, owner in (("seen", group), ("hidden", group), ("deep", inner)):
+            bpy.ops.mesh.primitive_plane_add(location=(0, 0, 1))
+            thing = bpy.context.object
+            thing.name = name
+            owner.objects.link(thing)
+            scene.collection.objects.unlink(thing)
+        bpy.data.objects["hidden"].hide_render = True
+        inner.hide_render = True
+        fine = bpy.data.objects["seen"].modifiers.new("fine", "SUBSURF")
+        fine.levels, fine.render_levels = 0, 2
+        bpy.ops.object.collection_instance_add(collection="things", location=(1, 0, 0))
+        told = self.told(scene)
+        self.assertIn("'seen': 32 triangles", told)
+        self.assertNotIn("'hidden'", told)
+        self.assertNotIn("'deep'", told)
+        scene.collection.children.link(group)  # most people keep such collections, excluded
+        layer = bpy.context.view_layer.layer_collection.children["things"]
+        layer.exclude = True
+        told = self.told(scene)
+        self.assertIn("'seen': 32 triangles", told)
+        self.assertNotIn("'hidden'", told)
+        self.assertNotIn("'deep'", told)
+        group.hide_render = True
+        self.assertNotIn("'seen'", self.told(scene))
+
+    def test_simplified_details(self) -> None:
+        scene = corner()
+        add_lamp("POINT", 200)
+        fine = bpy.data.objects["floor"].modifiers.new("fine", "SUBSURF")
+        fine.levels, fine.render_levels = 0, 3
+        scene.render.use_simplify = True
+        scene.render.simplify_subdivision, scene.render.simplify_subdivision_render = 0, 1
+        self.assertIn("'floor': 8 triangles", self.told(scene))
+
+    def test_shape_keys(self) -> None:
+        scene = corner()
+        add_lamp("POINT", 200)
+        floor = bpy.data.objects["floor"]
+        floor.shape_key_add(name="Basis")
+        raised = floor.shape_key_add(name="raised")
+        for point in raised.data:
+            point.co.z = 0.5
+        raised.value = 1.0
+        self.expect_floor_at(0.5, scene)
+
+    def expect_floor_at(self, expected: float, scene) -> None:
+        folder = self.kept(scene)
+        layer = bpy.context.view_layer
+        layer.use_pass_position = layer.use_pass_normal = True
+        self.render(scene)
+        image = exr_file.read_exr(folder / "image.exr")
+        on_floor = exr_file.layer(image, "N", "XYZ")[..., 1] > 0.999
+        height = exr_file.layer(image, "P", "XYZ")[..., 1][on_floor]
+        self.assertGreater(on_floor.mean(), 0.1)
+        np.testing.assert_allclose(height, expected, atol=0.01)
+
+    def test_children_of_what_is_hidden(self) -> None:
+        """A visible object keeps its place below a parent that is not rendered."""
+        for how in ("object", "collection", "excluded"):
+            with self.subTest(how):
+                scene = corner()
+                add_lamp("POINT", 200)
+                rig = bpy.data.collections.new("rig")
+                scene.collection.children.link(rig)
+                bpy.ops.mesh.primitive_plane_add(location=(0, 0, 0.5))
+                parent = bpy.context.object
+                parent.name = "parent"
+                rig.objects.link(parent)
+                scene.collection.objects.unlink(parent)
+                bpy.data.objects["floor"].parent = parent
+                parent.hide_render = how == "object"
+                rig.hide_render = how == "collection"
+                layer = bpy.context.view_layer.layer_collection.children["rig"]
+                layer.exclude = how == "excluded"
+                self.expect_floor_at(0.5, scene)
+                self.assertNotIn("'parent'", self.told(scene))
+
+    def test_render_region(self) -> None:
+        scene = corner()
+        add_lamp("POINT", 200)
+        whole = self.render(scene)
+        render = scene.render
+        render.use_border = True
+        render.border_min_x, render.border_max_x = 0.3, 0.8
+        render.border_min_y, render.border_max_y = 0.1, 0.55
+        left, right = int(0.3 * WIDTH), int(0.8 * WIDTH)
+        rows = slice(HEIGHT - int(0.55 * HEIGHT), HEIGHT - int(0.1 * HEIGHT))
+        part = self.render(scene)
+        np.testing.assert_array_equal(part[rows, left:right], whole[rows, left:right])
+        self.assertEqual(part[: rows.start].max(), 0.0)
+        render.use_crop_to_border = True
+        render.filepath = str(self.folder / "crop.exr")
+        bpy.ops.render.render(write_still=True)
+        image = bpy.data.images.load(str(self.folder / "crop.exr"))
+        self.assertEqual(tuple(image.size), (right - left, rows.stop - rows.start))
+        pixels = np.array(image.pixels[:]).reshape(image.size[1], image.size[0], -1)
+        np.testing.assert_array_equal(pixels[::-1, :, :3], whole[rows, left:right])
 
     def test_passes_and_depth_of_field(self) -> None:
         scene = corner()

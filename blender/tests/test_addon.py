@@ -59,6 +59,11 @@ class SectionsTest(unittest.TestCase):
         self.assertEqual(lamps.pixels_of(101, 50), 50)
         self.assertEqual(lamps.pixels_of(3, 10), 1)
 
+    def test_a_region_is_cut_as_in_single_precision(self) -> None:
+        self.assertEqual(lamps.pixel_at(0.55, 48), 26)
+        self.assertEqual(lamps.pixel_at(0.58, 100), 58)  # 57.99999999999999 in double precision
+        self.assertEqual(lamps.pixel_at(1.0, 1920), 1920)
+
     def test_camera(self) -> None:
         projection = [[1.0, 0.0, 0.2], [0.0, 2.0, -0.1]]
         told = lamps.camera_section(PLACED, projection, 2.0, lamps.Lens())
