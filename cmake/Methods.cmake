@@ -1,6 +1,7 @@
 # Each method is a folder. bnvpl_add_methods(render_lib gather), called in tools/render, finds every folder F of
 # tools/render/gather that holds F.cpp. It compiles the folder's sources into the library, collects its *_test.cpp
-# for bnvpl_methods_test, and generates the function gatherMethods(), which gather/gather.h declares.
+# for bnvpl_methods_test, and generates the function gatherMethods(), which gather/gather.h (SLOT.h, or
+# SLOT_method.h where there is one) declares.
 # Each folder defines one constant, bnvpl::methods::gather::F::method, of type GatherMethod.
 #
 #   bnvpl_add_methods(LIBRARY SLOT [DIRECTORY])   # DIRECTORY: parent of the folders; default: SLOT
@@ -40,7 +41,11 @@ function(bnvpl_add_methods library slot)
     string(APPEND declarations "namespace ${folder} {\nextern const ${type} method;\n}\n")
     string(APPEND entries "      &methods::${slot}::${folder}::method,\n")
   endforeach()
-  set(text "// Made by cmake/Methods.cmake from the folders of ${here}.\n#include \"${here}/${slot}.h\"\n\n")
+  set(header ${here}/${slot}.h)
+  if(EXISTS ${folder_path}/${slot}_method.h)
+    set(header ${here}/${slot}_method.h)
+  endif()
+  set(text "// Made by cmake/Methods.cmake from the folders of ${here}.\n#include \"${header}\"\n\n")
   string(APPEND text
     "namespace bnvpl {\nnamespace methods::${slot} {\n${declarations}}  // namespace methods::${slot}\n\n")
   string(APPEND text "std::span<const ${type}* const> ${slot}Methods() {\n")

@@ -41,6 +41,14 @@ constexpr Point2 r2Sequence(uint64_t index, double shiftX, double shiftY) {
   return {toUnitFloat(x), toUnitFloat(y)};
 }
 
+// Point `index` of 32 in the unit square: y is the middle of a stratum each, and x advances by the
+// golden ratio.
+inline constexpr uint32_t kGoldenPoints = 32;
+constexpr Point2 goldenPoint(uint32_t index) {
+  return {toUnitFloat(uint64_t{index} * 0x9e3779b97f4a7c15u),
+          (static_cast<float>(index) + 0.5f) / static_cast<float>(kGoldenPoints)};
+}
+
 constexpr uint32_t reverseBits(uint32_t x) {
   x = x >> 16 | x << 16;
   x = (x & 0xff00ff00u) >> 8 | (x & 0x00ff00ffu) << 8;

@@ -1,6 +1,7 @@
 // Warps from the unit square to directions and positions, each next to its density.
 #pragma once
 
+#include <array>
 #include <numbers>
 
 #include "core/random.h"
@@ -47,6 +48,20 @@ inline Point2 invertDiskSample(Vec3 p) {
   const float other = r * std::atan(across / along) * (4.0f / kPi);
   const float a = wide ? r : other, b = wide ? other : r;
   return {0.5f * (a + 1.0f), 0.5f * (b + 1.0f)};
+}
+// The sample that becomes goldenPoint(index) in polar coordinates of the disk, so that cosines of
+// the hemisphere have the strata of y.
+inline Point2 goldenDiskSample(uint32_t index) {
+  static const std::array<Point2, kGoldenPoints> samples = [] {
+    std::array<Point2, kGoldenPoints> all;
+    for (uint32_t i = 0; i < kGoldenPoints; ++i) {
+      const Point2 at = goldenPoint(i);
+      const float r = std::sqrt(at.y), phi = 2.0f * kPi * at.x;
+      all[i] = invertDiskSample({r * std::cos(phi), r * std::sin(phi), 0.0f});
+    }
+    return all;
+  }();
+  return samples[index];
 }
 inline Point2 invertCosineHemisphereSample(Vec3 d) { return invertDiskSample(d); }
 inline float pdfCosineHemisphere(float cosTheta) { return std::max(0.0f, cosTheta) / kPi; }

@@ -52,15 +52,6 @@ uint32_t Bsdf::frame(Vec3 shadingNormal, float turns) {
   return frameCount_++;
 }
 
-// Cosine-weighted mean over wi of the smaller transmittance of the coat, `most` at wo.
-float Bsdf::meanThrough(const CoatAbove& above, float most) {
-  constexpr int kSteps = 8;
-  float sum = 0.0f;
-  for (int i = 0; i < kSteps; ++i)
-    sum += std::min(most, above.through(std::sqrt((float(i) + 0.5f) / kSteps)));
-  return sum / kSteps;
-}
-
 void Bsdf::finish() {
   roughAlbedo_ = min(roughAlbedo_, Vec3(1));
   for (Summand& s : std::span(lobes_, count_))

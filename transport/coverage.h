@@ -63,19 +63,23 @@ class Coverage {
     return found;
   }
 
-  // Probability with which pick() returns VPL i for the point, where no more than kMaxEligible
-  // reach it: one over the number of VPLs that cover it, or 0 if i is none of them.
+  // Probability with which pick() returns VPL i for the point: one over the number of VPLs that
+  // cover it, or 0 if i is none of them.
   float probabilityOf(uint32_t i, Vec3 at, Vec3 normal) const {
-    const auto covers = [&](uint32_t k) {
-      return compatibleSurfaces(at, normal, position_[k], normal_[k], kPlaneFactor * reach_[k]) &&
-             inSight(at, normal, k);
+    const auto compatible = [&](uint32_t k) {
+      return compatibleSurfaces(at, normal, position_[k], normal_[k], kPlaneFactor * reach_[k]);
     };
-    if (!covers(i)) return 0.0f;
-    uint32_t covering = 1;
+    if (!compatible(i) || !inSight(at, normal, i)) return 0.0f;
+    uint32_t covering = 0;
+    size_t eligible = 0;
+    bool picked = false;
     ReachGrid::forEachReaching(grid_.lookUp(at), [&](const ReachGrid::Disk& d) {
-      covering += d.index != i && covers(d.index) ? 1 : 0;
+      if (eligible == kMaxEligible || !compatible(d.index)) return;
+      ++eligible;
+      picked |= d.index == i;
+      covering += d.index == i || inSight(at, normal, d.index) ? 1 : 0;
     });
-    return 1.0f / static_cast<float>(covering);
+    return picked ? 1.0f / static_cast<float>(covering) : 0.0f;
   }
 
   // Samples the surface that VPL i covers: maps `square`, a point of the unit square, to the VPL's

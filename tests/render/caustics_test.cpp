@@ -65,9 +65,8 @@ NearFieldRays nearField(const World& world, const VplTable& lit, const char* com
           std::move(point),
           methodNamed(compensateMethods(), compensate)
               .make({lit, world.accel, 2.0f, VplKind{}, {}}, {}),
-          1,
           nullptr,
-          Only::Indirect};
+          ShownLight::Indirect};
 }
 
 // The points that rays hit behind a near-specular lobe lie near a VPL that knows their light. They

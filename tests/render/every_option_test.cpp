@@ -2,7 +2,7 @@
 #include "tests/render/lit_rooms.h"
 #include "tests/support/gather_checks.h"
 #include "tools/render/compensate/compensate.h"
-#include "tools/render/integrator/integrator.h"
+#include "tools/render/integrator/integrator_method.h"
 
 namespace bnvpl::test {
 namespace {

@@ -54,10 +54,11 @@ struct Light {
 };
 
 // The marginal cost that a pilot finds where light(sample index) is what each sample has.
-double marginalCost(FilterKind filter, Only only, const std::function<Light(size_t index)>& light) {
+double marginalCost(FilterKind filter, ShownLight shown,
+                    const std::function<Light(size_t index)>& light) {
   World world("cornell/scene.toml");
   world.scene.film = {64, 64};
-  return findAllocation(world.scene, PixelFilter(filter, 2.0f), 1, 16, only, {},
+  return findAllocation(world.scene, PixelFilter(filter, 2.0f), 1, 16, shown, {},
                         [&](const TileSamples& tile) {
                           for (size_t i = 0; i < tile.samples.size(); ++i) {
                             CameraSample& s = tile.samples[i];
@@ -72,10 +73,10 @@ double marginalCost(FilterKind filter, Only only, const std::function<Light(size
 
 TEST(SampleAllocation, SignsOfThePixelFilterAreNoNoise) {
   const auto even = [](size_t) { return Light{1.0f}; };
-  EXPECT_EQ(marginalCost(FilterKind::Mitchell, Only::Everything, even), 0.0);
+  EXPECT_EQ(marginalCost(FilterKind::Mitchell, ShownLight::All, even), 0.0);
   const auto noisy = [](size_t i) { return Light{i / 64 % 2 ? 1.2f : 1.0f}; };
-  const double box = marginalCost(FilterKind::Box, Only::Everything, noisy),
-               mitchell = marginalCost(FilterKind::Mitchell, Only::Everything, noisy);
+  const double box = marginalCost(FilterKind::Box, ShownLight::All, noisy),
+               mitchell = marginalCost(FilterKind::Mitchell, ShownLight::All, noisy);
   EXPECT_GT(box, 0.0);
   const double factor{PixelFilter(FilterKind::Mitchell, 2.0f).squaredWeight()};
   EXPECT_GT(factor, 1.1);
@@ -89,13 +90,13 @@ TEST(SampleAllocation, PilotsLieInNegativeLobesAsOftenAsTheImageAndHaveNoWeights
   const Film film = world.scene.film = {64, 64};
   const PixelFilter filter(FilterKind::Mitchell, 2.0f);
   std::atomic<size_t> negative = 0, all = 0, weighted = 0;
-  findAllocation(world.scene, filter, 1, 16, Only::Everything, {}, [&](const TileSamples& tile) {
+  findAllocation(world.scene, filter, 1, 16, ShownLight::All, {}, [&](const TileSamples& tile) {
     for (size_t i = 0; i < tile.samples.size(); ++i) {
       const CameraSample& s = tile.samples[i];
       const RasterPoint at = projectToFilm(world.scene.camera, film, s.origin + s.direction);
       const uint32_t p = static_cast<uint32_t>(i) % tile.pixels;
-      const float x = at.x * 64.0f - float(tile.x + p % tile.width) - 0.5f,
-                  y = at.y * 64.0f - float(tile.y + p / tile.width) - 0.5f;
+      const float x = at.x * 64.0f - float(tile.pixelX(p)) - 0.5f,
+                  y = at.y * 64.0f - float(tile.pixelY(p)) - 0.5f;
       negative += filter.density(x, y) < 0.0f;
       weighted += tile.weighted || s.weight != 1.0f;
     }
@@ -114,7 +115,7 @@ TEST(SampleAllocation, DirectSamplesOfPilotsHaveNoWeights) {
   const PixelFilter mitchell(FilterKind::Mitchell, 2.0f);
   const DirectSamples direct(world.accel, world.lights, mitchell, nullptr, nullptr, 5, true);
   const auto costWith = [&](bool weighted) {
-    return findAllocation(world.scene, mitchell, 1, 16, Only::Direct, {},
+    return findAllocation(world.scene, mitchell, 1, 16, ShownLight::Direct, {},
                           [&](TileSamples tile) {
                             tile.weighted = weighted;
                             const std::vector<SpecularPath> paths(tile.samples.size());
@@ -132,9 +133,9 @@ TEST(SampleAllocation, DirectSamplesOfPilotsHaveNoWeights) {
 // Photons of a pixel have no weight, unlike the rest of a sample's indirect light.
 TEST(SampleAllocation, LightOfTheWholePixelHasNoWeight) {
   RadianceSample sample;
-  sample.ofPixel = Vec3(3.0f);
+  sample.pixelLight = Vec3(3.0f);
   for (const float weight : {-1.25f, 1.0f, 1.5f}) {
-    sample.indirect = sample.ofPixel + Vec3(2.0f * weight);
+    sample.indirect = sample.pixelLight + Vec3(2.0f * weight);
     EXPECT_FLOAT_EQ(mean(unweightedIndirect(sample, weight)), 5.0f) << weight;
   }
 }
@@ -144,7 +145,7 @@ TEST(SampleAllocation, BlackTilesDoNotEndIt) {
   World world("cornell/scene.toml");
   world.scene.film = {64, 64};
   const auto found = [&](uint32_t litColumns) {
-    return findAllocation(world.scene, {}, 1, 16, Only::Everything, {},
+    return findAllocation(world.scene, {}, 1, 16, ShownLight::All, {},
                           [&](const TileSamples& tile) {
                             for (size_t i = 0; i < tile.samples.size(); ++i) {
                               tile.samples[i].radiance.direct = Vec3(tile.x >= litColumns ? 0.0f
@@ -156,7 +157,7 @@ TEST(SampleAllocation, BlackTilesDoNotEndIt) {
   };
   const SampleAllocation all = found(64), few = found(16);
   EXPECT_GT(few.marginalCost, 0.0);
-  EXPECT_DOUBLE_EQ(few.medianLight, all.medianLight);
+  EXPECT_DOUBLE_EQ(few.medianSquared, all.medianSquared);
   EXPECT_EQ(found(0).marginalCost, 0.0);
 }
 
@@ -179,17 +180,17 @@ TEST(SampleAllocation, CameraPathsThatDecideOnDirectSamplesAreNotAmongThem) {
 
 TEST(SampleAllocation, OnlyShownLightCounts) {
   const auto noisyDirect = [](size_t i) { return Light{static_cast<float>(i / 64), 1.0f}; };
-  EXPECT_GT(marginalCost(FilterKind::Box, Only::Everything, noisyDirect), 0.0);
-  EXPECT_EQ(marginalCost(FilterKind::Box, Only::Indirect, noisyDirect), 0.0);
+  EXPECT_GT(marginalCost(FilterKind::Box, ShownLight::All, noisyDirect), 0.0);
+  EXPECT_EQ(marginalCost(FilterKind::Box, ShownLight::Indirect, noisyDirect), 0.0);
 }
 
 TEST(SampleAllocation, SamplesThatAreNoNumbersAreBlack) {
   const auto broken = [](float light) {
     return [=](size_t i) { return Light{i == 70 ? light : 1.0f}; };
   };
-  const double black = marginalCost(FilterKind::Box, Only::Everything, broken(0.0f));
+  const double black = marginalCost(FilterKind::Box, ShownLight::All, broken(0.0f));
   EXPECT_GT(black, 0.0);
-  EXPECT_EQ(marginalCost(FilterKind::Box, Only::Everything, broken(NAN)), black);
+  EXPECT_EQ(marginalCost(FilterKind::Box, ShownLight::All, broken(NAN)), black);
 }
 
 // Light comes through a door, and direct light from an emitter hidden from most of the film.

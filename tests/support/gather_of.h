@@ -8,13 +8,13 @@ namespace bnvpl::test {
 
 struct GatherOf {
   // Takes `options` like vpl-render; borrows the world and the VPLs. A gather that inspects the
-  // film gets no points, and one that inspects the table of the VPLs gets no rows.
+  // film gets no points.
   GatherOf(const World& world, const VplLights& vpls, const Given& options)
       : tree(buildLightTree(vpls, 1)), point(world.accel, vpls, tree) {
     const Values values = resolve(renderSpec(), options);
     const ProgressFn silent;
     gather = methodNamed(gatherMethods(), values[OptionKey<std::string>{"gather"}])
-                 .make({world.accel, world.lights, lit, vpls, tree, 1,
+                 .make({world.accel, vpls, tree, 1,
                         [this] {
                           looksAtFilm = true;
                           return FilmPoints{};
@@ -33,7 +33,6 @@ struct GatherOf {
     gather.tile(tile, out);
     return out[0];
   }
-  VplTable lit;
   bool looksAtFilm = false;
   LightTree tree;
   PointGather point;

@@ -70,12 +70,11 @@ double VplPaths::add(const SurfacePoint& hit, float area, const PhotonMis& photo
     r.rays += 2 * addOutgoingRadiance(in_.accel, in_.lights, bsdf, weight, length_,
                                       settings_.spatialLights, rng, first, later, sinks, photons);
   };
-  // Exitance is the integral of the cosine times radiance over outgoing directions. Where the
-  // albedo is constant, it is that of a diffuse surface of this albedo, as it is for photons. The
-  // albedo of layered materials depends on the incident direction, so wo is sampled with a
-  // cosine-weighted density.
+  // Exitance is the integral of the cosine times radiance over outgoing directions. A diffuse
+  // surface has the same radiance in all of them. Elsewhere wo is sampled with a cosine-weighted
+  // density.
   const Scene& scene = in_.accel.scene();
-  if (const Bsdf bsdf(scene, hit); bsdf.albedoIsConstant()) {
+  if (const Bsdf bsdf(scene, hit); bsdf.diffuseOnly()) {
     const Bsdf diffuse(hit, bsdf.roughAlbedo());
     for (uint64_t j = 0; j < settings_.paths; ++j) addPath(diffuse);
   } else {

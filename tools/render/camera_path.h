@@ -72,16 +72,16 @@ inline void describeShadingPoint(const Bsdf& bsdf, RadianceSample& out) {
 // the camera sees without a specular vertex between.
 template <typename Leaving>
 RadianceSample tracePath(const Accelerator& accel, const LightSet& lights,
-                         const CameraSample& sample, Only only, bool indirect, Rng& rng,
+                         const CameraSample& sample, ShownLight shown, bool indirect, Rng& rng,
                          const Leaving& leaving, const SpecularLightSampling& specularLights = {}) {
   RadianceSample out;
   const SpecularPath path = traceCameraPath(accel, lights, sample.origin, sample.direction,
                                             sample.weight, rng, out, specularLights, sample.groups);
-  const bool directOnly = only == Only::Direct || (!indirect && path.specularBounces == 0);
+  const bool directOnly = shown == ShownLight::Direct || (!indirect && path.specularBounces == 0);
   if (!path.rough) return out;
   const Bsdf bsdf(accel.scene(), path.hit);
   describeShadingPoint(bsdf, out);
-  if (directOnly && only == Only::Indirect) return out;
+  if (directOnly && shown == ShownLight::Indirect) return out;
   leaving(bsdf, path.throughput, directOnly, out);
   return out;
 }

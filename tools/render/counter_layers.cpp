@@ -6,7 +6,7 @@
 #include <tuple>
 
 #include "core/errors.h"
-#include "tools/render/integrator/integrator.h"
+#include "tools/render/integrator/integrator_method.h"
 #include "tools/render/integrator/vpl_kind.h"
 
 namespace bnvpl {
@@ -43,7 +43,7 @@ std::vector<Counter> countersOf(const GatherMethod& gather, const CompensateMeth
                                 VplKind light) {
   std::vector<Counter> counters(gather.counters.begin(), gather.counters.end());
   counters.insert(counters.end(), compensate.counters.begin(), compensate.counters.end());
-  if (compensate.oneSize) return counters;  // requireTakenLight() refuses such light
+  if (compensate.oneSize) return counters;  // requireKindCompensated() refuses such light
   const std::span<const Counter> own = lightCounters(light);
   counters.insert(counters.end(), own.begin(), own.end());
   return counters;

@@ -18,7 +18,7 @@ void requireConsistent(const Values& options, const Given& given, const RenderFi
                        bool inShards);
 
 // The lit VPLs; no rows where there is no file. Throws MemoryError where rendering them cannot fit,
-// unless the run only estimates.
+// unless the run only predicts its cost.
 VplTable readLit(const fs::path& lit, const Values& options, bool predictsCost);
 
 // Gives the scene the film that the options ask for, and the options the film's filter where they

@@ -11,7 +11,7 @@
 #include "tools/common/run/result_warning.h"
 #include "tools/render/counter_layers.h"
 #include "tools/render/image_camera.h"
-#include "tools/render/integrator/integrator.h"
+#include "tools/render/integrator/integrator_method.h"
 #include "tools/render/stage_options.h"
 
 namespace bnvpl {
@@ -228,7 +228,7 @@ void reportGathered(const RenderResult& result, const Values& options, Summary& 
   summary.add("emission_points", result.emissionPoints);
   summary.add("mean_cut", stats.cut);
   summary.add("mean_shadow_rays", stats.shadowRays);
-  for (const PlanCount& c : result.planned) {
+  for (const FilmCount& c : result.filmCounts) {
     std::snprintf(line, sizeof line, "%.0f %s", c.value, std::string(c.unit).c_str());
     summary.add(std::string(c.name), c.value, line);
   }

@@ -122,23 +122,23 @@ float PixelFilter::density(float x, float y) const {
 // With the shares b and 1 - b of the signs along an axis, the product is negative with probability
 // 2 b (1 - b), and |f| integrates to 1 / (1 - 2 b)^2. Weights of n samples, of which m are
 // negative: the share of each sign, times that integral, over m and over n - m.
-PixelFilter::Sample PixelFilter::samplePlaces(Point2 u, const Turn& turn) const {
+PixelFilter::Sample PixelFilter::samplePlaces(Point2 u, const SampleOfSet& which) const {
   const Axis& a = *axis_;
   const float b = a.negative, share = 2.0f * b * (1.0f - b);
   if (!(share > 0.0f)) return {{a.place(Axis::kPositive, u.x), a.place(Axis::kPositive, u.y)}};
   const float all = a.absoluteIntegral();
   bool below = false;
   float weight = 0.0f;
-  if (turn.count < 2) {
+  if (which.count < 2) {
     below = takesBranch(u.x, share);
     weight = below ? -all : all;
   } else {
-    const auto count = static_cast<double>(turn.count);
+    const auto count = static_cast<double>(which.count);
     const auto fewest = static_cast<uint64_t>(double{share} * count + 0.5);
-    const uint64_t belows = std::clamp<uint64_t>(fewest, 1, turn.count - 1);
-    below = (turn.index + turn.key % turn.count) % turn.count < belows;
+    const uint64_t belows = std::clamp<uint64_t>(fewest, 1, which.count - 1);
+    below = (which.index + which.key % which.count) % which.count < belows;
     const double each = below ? -double{share} * count / double(belows)
-                              : (1.0 - double{share}) * count / double(turn.count - belows);
+                              : (1.0 - double{share}) * count / double(which.count - belows);
     weight = static_cast<float>(each) * all;
   }
   const auto signOf = [](bool negative) { return negative ? Axis::kNegative : Axis::kPositive; };

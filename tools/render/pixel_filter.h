@@ -25,7 +25,7 @@ class PixelFilter {
   // number of them a negative weight, so that the weights of all add up to their number. `key`
   // decides which ones. With less than two samples the sign is random. `weighted`: whether the
   // sample gets its weight; pilots, which measure noise, take 1 for all.
-  struct Turn {
+  struct SampleOfSet {
     uint64_t index = 0, count = 0, key = 0;
     bool weighted = true;
   };
@@ -42,9 +42,9 @@ class PixelFilter {
   // two samples of a filter with negative lobes is up to 1.8 times as large.
   float squaredWeight() const { return isPixel() ? 1.0f : axisSquaredWeight(); }
   // Maps the unit square to places with a density proportional to |density()|.
-  Sample sample(Point2 u, const Turn& turn) const {
-    Sample out = isPixel() ? Sample{u} : samplePlaces(u, turn);
-    if (!turn.weighted) out.weight = 1.0f;
+  Sample sample(Point2 u, const SampleOfSet& which) const {
+    Sample out = isPixel() ? Sample{u} : samplePlaces(u, which);
+    if (!which.weighted) out.weight = 1.0f;
     return out;
   }
   Sample sample(Point2 u) const { return sample(u, {}); }
@@ -53,7 +53,7 @@ class PixelFilter {
   struct Axis;
   float axisRadius() const;
   float axisSquaredWeight() const;
-  Sample samplePlaces(Point2 u, const Turn& turn) const;
+  Sample samplePlaces(Point2 u, const SampleOfSet& which) const;
 
   std::shared_ptr<const Axis> axis_;  // the filter along x and along y; null: the pixel's box
 };

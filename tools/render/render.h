@@ -7,43 +7,16 @@
 #include "core/work_controls.h"
 #include "formats/image/image.h"
 #include "tools/render/film/passes/passes.h"
-#include "tools/render/integrator/integrator.h"
+#include "tools/render/integrator/integrator_method.h"
+#include "tools/render/render_options.h"
 
 namespace bnvpl {
-
-// Options of the stage (stage_options.h) and of each method.
-const StageSpec& renderSpec();
-// Values of a run. With --time, --target-error or --passes, --spp is an upper limit if it is given.
-// Throws UsageError.
-Values resolveRender(const Given& given);
-// The options as if the filter of the film had been given, unless another one was.
-Given withFilterOf(const Film& film, Given given);
-// The budget of the passes, or none if the image is rendered without passes. Throws UsageError.
-std::optional<PassBudget> budgetOf(const Values& options);
-// Samples per pixel in a pass, on average, unless a trial finds that fewer fit into --time.
-uint64_t passSppOf(const Values& options);
-const IntegratorMethod& integratorOf(const Values& options);
-
-// Parses "X0,Y0,X1,Y1", a rectangle of pixels that is not empty. Throws UsageError.
-PixelBox parseCrop(const std::string& text);
-// The pixels that --crop names, or none without it. Throws UsageError if the film has others.
-std::optional<PixelBox> cropOf(const Values& options, const Film& film);
-
-// Layers that --layers names. Throws UsageError.
-std::vector<const Layer*> layersOf(const Values& options);
-
-// Light groups that the image shows; empty unless --layers asks for them. Throws InputError if no
-// light of the scene has one, and UsageError if the gather does not tell groups apart.
-std::vector<std::string> lightGroupsOf(const Values& options, const Scene& scene);
-
-// Number of samples and photons that progress will count; 0 if unknown.
-uint64_t renderWork(const Scene& scene, const Values& options);
 
 struct RenderResult {
   Image image;
   FilmStats stats;
   size_t vpls = 0, emissionPoints = 0;  // see Integrator
-  std::vector<PlanCount> planned = {};
+  std::vector<FilmCount> filmCounts = {};
   CausticStats caustics = {};
   std::vector<std::string_view> idle = {};  // options that had no effect
   std::vector<std::string> groups = {};  // light groups that the image shows
@@ -57,6 +30,15 @@ struct RenderResult {
 Integrator makeIntegrator(const Accelerator& accel, const LightSet& lights, const VplTable& lit,
                           const Values& options, const ProgressFn& progress,
                           CostTrial* trial = nullptr);
+
+// Renders the film of the scene. `lit` is of stage Lit, or empty if the integrator needs no VPLs. A
+// pure function: neither threads nor interruptions change a byte, given the same number of passes
+// if there is a budget. --time counts from `startS`, of nowS().
+RenderResult render(const Accelerator& accel, const LightSet& lights, const VplTable& lit,
+                    const Values& options, const ProgressFn& progress = {},
+                    const WorkControls& controls = {}, const FilmPreview& preview = {},
+                    double startS = nowS());
+
 // Renders only samples, `spp` per pixel, for a cost estimate.
 void renderSamples(const Accelerator& accel, const Integrator& integrator, const Values& options,
                    uint32_t spp, const ProgressFn& progress, const WorkControls& controls);
@@ -66,12 +48,7 @@ void renderSamples(const Accelerator& accel, const Integrator& integrator, const
 RenderResult joinRendered(const Film& film, const Values& options, const ShardSource& source,
                           const std::vector<std::string>& groups = {});
 
-// Renders the film of the scene. `lit` is of stage Lit, or empty if the integrator needs no VPLs. A
-// pure function: neither threads nor interruptions change a byte, given the same number of passes
-// if there is a budget. --time counts from `startS`, of nowS().
-RenderResult render(const Accelerator& accel, const LightSet& lights, const VplTable& lit,
-                    const Values& options, const ProgressFn& progress = {},
-                    const WorkControls& controls = {}, const FilmPreview& preview = {},
-                    double startS = nowS());
+// Number of samples and photons that progress will count; 0 if unknown.
+uint64_t renderWork(const Scene& scene, const Values& options);
 
 }  // namespace bnvpl

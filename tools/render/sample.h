@@ -14,7 +14,7 @@
 namespace bnvpl {
 
 // The part of the light that an image shows.
-enum class Only { Everything, Direct, Indirect };
+enum class ShownLight { All, Direct, Indirect };
 
 // Size of a sample's or photon's light, by which fireflies are found: that of the mean over its
 // channels, which is negative in the negative lobes of a pixel filter.
@@ -36,7 +36,7 @@ struct Counter {
   std::string_view help;
 };
 // What a method of --gather counts once for the whole film, a number in --stats.
-struct PlanCount {
+struct FilmCount {
   std::string_view name, unit;
   double value = 0.0;
 };
@@ -53,8 +53,10 @@ struct RadianceSample {
   PhotonLight photons;  // in the whole pixel; part of `indirect`
   Vec3 clamped;         // indirect light that the bound on 1/d^2 removed from the VPLs
   Vec3 compensated;     // indirect light by sampled rays instead of VPLs; part of `indirect`
-  Vec3 gathered;        // light of VPLs that a film filter smooths; part of `indirect`
-  Vec3 ofPixel;         // light of the whole pixel, as of photons; part of `indirect`
+  Vec3 toFilter;        // light of VPLs that a film filter smooths; part of `indirect`
+  // Indirect light that is estimated once for the pixel and is equal in all its samples, without
+  // the filter's weight: photons, and gathers with pixelSum. It is a part of `indirect`.
+  Vec3 pixelLight;
   Vec3 albedo, normal;  // at the shading point
   float depth = 0.0f;   // first hit, along the viewing axis; 0: the ray hit nothing
   uint32_t cut = 0, shadowRays = 0;
@@ -62,9 +64,9 @@ struct RadianceSample {
 };
 
 // The light of a sample that an image shows.
-inline Vec3 shownRadiance(const RadianceSample& sample, Only only) {
-  return (only != Only::Indirect ? sample.direct : Vec3{}) +
-         (only != Only::Direct ? sample.indirect : Vec3{});
+inline Vec3 shownRadiance(const RadianceSample& sample, ShownLight shown) {
+  return (shown != ShownLight::Indirect ? sample.direct : Vec3{}) +
+         (shown != ShownLight::Direct ? sample.indirect : Vec3{});
 }
 
 inline Vec3 finiteOrBlack(Vec3 light) { return isFinite(light) ? light : Vec3{}; }
@@ -76,7 +78,7 @@ inline Vec3 finiteOrBlack(Vec3 light) { return isFinite(light) ? light : Vec3{};
 inline Vec3 unweighted(Vec3 light, float weight) { return finiteOrBlack(light * (1.0f / weight)); }
 // The same for all indirect light of a sample. What the whole pixel has in common has no weight.
 inline Vec3 unweightedIndirect(const RadianceSample& sample, float weight) {
-  return unweighted(sample.indirect - sample.ofPixel, weight) + finiteOrBlack(sample.ofPixel);
+  return unweighted(sample.indirect - sample.pixelLight, weight) + finiteOrBlack(sample.pixelLight);
 }
 
 // The light of a sample by light group, W/(m2 sr): what RadianceSample has for all lights together.
@@ -127,6 +129,12 @@ struct TileLayout {
   uint32_t sequenceOffset = 0;
   uint32_t groups = 0;   // light groups that the samples tell apart; 0: none
   bool weighted = true;  // whether samples have weights of the pixel filter; those of pilots have 1
+
+  // Place of the tile's pixel `p` on the film.
+  uint32_t pixelX(uint32_t p) const { return x + p % width; }
+  uint32_t pixelY(uint32_t p) const { return y + p / width; }
+  // Index within its pixel of the tile's sample `i`.
+  uint32_t sampleIndex(size_t i) const { return firstSample + static_cast<uint32_t>(i / pixels); }
 };
 
 struct TileSamples : TileLayout {

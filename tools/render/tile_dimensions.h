@@ -15,39 +15,43 @@ enum TileDimension : uint32_t {
   kDimStratum = 2,
   kDimPacket = 3,
   kDimRoulette = 4,  // to 7: one for each packet, under keys of their own (ReceiverPacket)
+  // Rays for indirect light from a shading point.
+  kDimRay = 16,
+  // The specular path of a sample's camera ray.
+  kDimCameraPath = 17,
   // Representatives of a pixel's samples (gather/multidimensional).
-  kDimReceivers = 18,
-  // Receivers of a slice's clusters (gather/matrix_completion).
-  kDimMatrixPart = 20,
+  kDimRepresentatives = 18,
   // Local virtual lights (compensate/local).
   kDimLocalLights = 19,
-  // Rays for indirect light from a shading point, and those that sample allocation adds: the first
-  // for parity 0, the second for parity 1.
-  kDimRay = 16,
-  kDimMoreRays0 = 5u << 28,
-  kDimMoreRays1 = kDimMoreRays0 + 1,
-  // The pilots of sample allocation among these rays, by parity.
+  // Receivers of a slice's clusters (gather/matrix_completion).
+  kDimMatrixPart = 20,
+  // The pilots of sample allocation among the rays for indirect light: the first for parity 0, the
+  // second for parity 1.
   kDimPilotRays0 = 24,
   kDimPilotRays1 = kDimPilotRays0 + 1,
-  // Camera rays: the specular path of a sample, further rays of a pixel for emission and for the
-  // control variate, and camera samples of direct light with their pilots.
-  kDimCameraPath = 17,
-  kDimEmissionRays = 1u << 31,
-  kDimControlRays = 13u << 27,
-  kDimDirectSamples = 7u << 28,
-  kDimDirectPilots = 3u << 29,
   // Shadow rays to lights.
   kDimLight = 1u << 30,
+  // Rays for indirect light that sample allocation adds, by parity.
+  kDimMoreRays0 = 5u << 28,
+  kDimMoreRays1 = kDimMoreRays0 + 1,
+  // Pilots of the camera samples of direct light.
+  kDimDirectPilots = 3u << 29,
+  // Further camera rays of a pixel for the control variate.
+  kDimControlRays = 13u << 27,
+  // Camera samples of direct light.
+  kDimDirectSamples = 7u << 28,
+  // Further camera rays of a pixel for emission.
+  kDimEmissionRays = 1u << 31,
   // The pattern of parities and blocks of a sample index.
   kDimParity = 11u << 28
 };
 
 namespace dimensions {
 inline constexpr std::array kAll{
-    kDimReceiver,   kDimVpl,          kDimStratum,     kDimPacket,        kDimRoulette,
-    kDimReceivers,  kDimLocalLights,  kDimRay,         kDimMoreRays0,     kDimMoreRays1,
-    kDimCameraPath, kDimEmissionRays, kDimControlRays, kDimDirectSamples, kDimDirectPilots,
-    kDimLight,      kDimParity,       kDimMatrixPart,  kDimPilotRays0,    kDimPilotRays1};
+    kDimReceiver,     kDimVpl,         kDimStratum,         kDimPacket,       kDimRoulette,
+    kDimRay,          kDimCameraPath,  kDimRepresentatives, kDimLocalLights,  kDimMatrixPart,
+    kDimPilotRays0,   kDimPilotRays1,  kDimLight,           kDimMoreRays0,    kDimMoreRays1,
+    kDimDirectPilots, kDimControlRays, kDimDirectSamples,   kDimEmissionRays, kDimParity};
 constexpr bool distinct() {
   for (size_t i = 0; i < kAll.size(); ++i)
     if (std::count(kAll.begin(), kAll.end(), kAll[i]) != 1) return false;

@@ -57,8 +57,8 @@ struct PhotonMis {
   float rayWeight(size_t light, Vec3 towards, Vec3 from, const Place& place,
                   float shadowRays) const {
     if (!sends(light, towards)) return 1.0f;
-    if (!lights->hittable(light) && !(misRatio > 0.0f)) return 0.0f;
     if (!lights->photonsReach(light, towards, from)) return 1.0f;
+    if (!lights->hittable(light) && !(misRatio > 0.0f)) return 0.0f;
     const float guided =
         guide && guide->guides()
             ? guide->density({static_cast<uint32_t>(light),

@@ -23,21 +23,19 @@ using Contribution =
 
 struct Shown {
   uint32_t width = 64, height = 48;
-  Only only = Only::Everything;
+  ShownLight shown = ShownLight::All;
   Image operator()(const Contribution& contribution, uint32_t spp, bool spread) const {
     Scene scene;
     scene.film = {width, height};
     const FilmOptions options{.spp = spp,
-                              .only = only,
+                              .shown = shown,
                               .layers = parseLayers("direct,indirect"),
                               .redistributeFireflies = spread};
     const Integrator integrator{[&](const TileSamples& tile) {
       for (size_t k = 0; k < tile.samples.size(); ++k) {
         const auto p = static_cast<uint32_t>(k % tile.pixels);
         tile.samples[k].radiance.depth = 1.0f;
-        contribution(tile.x + p % tile.width, tile.y + p / tile.width,
-                     tile.firstSample + static_cast<uint32_t>(k / tile.pixels),
-                     tile.samples[k].radiance);
+        contribution(tile.pixelX(p), tile.pixelY(p), tile.sampleIndex(k), tile.samples[k].radiance);
       }
     }};
     FilmStats stats;
@@ -142,17 +140,17 @@ TEST(Fireflies, OfDirectLightAreSpreadButNotVisibleEmission) {
 
 // Light that is not shown stays.
 TEST(Fireflies, OfOneKindOfLightAlone) {
-  for (const Only only : {Only::Direct, Only::Indirect}) {
-    const Shown film{.only = only};
+  for (const ShownLight shown : {ShownLight::Direct, ShownLight::Indirect}) {
+    const Shown film{.shown = shown};
     const Contribution both = [](uint32_t x, uint32_t y, uint32_t sample, RadianceSample& out) {
       out.direct = out.indirect = Vec3(there(x, y, sample) ? 160.0f : 1.0f);
     };
     const Image kept = film(both, 16, false), spread = film(both, 16, true);
-    const char *shown = only == Only::Direct ? "direct.G" : "indirect.G",
-               *other = only == Only::Direct ? "indirect.G" : "direct.G";
+    const char *own = shown == ShownLight::Direct ? "direct.G" : "indirect.G",
+               *other = shown == ShownLight::Direct ? "indirect.G" : "direct.G";
     EXPECT_EQ(*spread.find(other), *kept.find(other));
-    EXPECT_LT((*spread.find(shown))[index(film)], 1.3f);
-    EXPECT_EQ(*spread.find("G"), *spread.find(shown));
+    EXPECT_LT((*spread.find(own))[index(film)], 1.3f);
+    EXPECT_EQ(*spread.find("G"), *spread.find(own));
     EXPECT_NEAR(sumOf(spread, "G") / sumOf(kept, "G"), 1.0, 1e-6);
   }
 }
@@ -209,7 +207,7 @@ TEST(Fireflies, IntegratorsReportVisibleEmission) {
     const Values options = resolveRender(test::with({{"only", "direct"}, {"spp", "4"}}, way));
     const ProgressFn quiet;
     const Integrator integrator = integratorOf(options).make(
-        {world.accel, world.lights, {}, 1, Only::Direct, {}, quiet}, options);
+        {world.accel, world.lights, {}, 1, ShownLight::Direct, {}, quiet}, options);
     float most = 0.0f;
     const Tiles tiles(world.scene.film);
     for (size_t t = 0; t < tiles.count(); ++t) {

@@ -34,19 +34,19 @@ LightNode cluster(Rng& rng) {
   return n;
 }
 
-// Clusters near and far, receivers with small and large BSDF values. Where the quick test says far,
-// no receiver in the box gets more light than allowed.
-TEST(DeviationModel, TheFarTestIsConservative) {
+// Clusters near and far, receivers with small and large BSDF values. Where the quick test says
+// faint, no receiver in the box gets more light than allowed.
+TEST(DeviationModel, TheFaintTestIsConservative) {
   Rng rng(streamKey(11, RandomStream::Plot), 0);
-  int far = 0, exceeded = 0;
+  int faint = 0, exceeded = 0;
   for (int i = 0; i < 20000; ++i) {
     const LightNode n = cluster(rng);
     const Bounds receivers = boxAbout(4.0f * (somewhere(rng) - Vec3(0.5f)), rng);
     const float brightest = 10.0f * rng.next();
     float allowed = 10.0f * rng.next();
     allowed *= rng.next();
-    const bool says = surelyFar(n, allowed, receivers, brightest);
-    far += says;
+    const bool says = surelyFaint(n, allowed, receivers, brightest);
+    faint += says;
     const DeviationModel<PointLight> expected(n);
     for (int k = 0; k < 16; ++k) {
       const Vec3 at = receivers.lower + receivers.extent() * somewhere(rng);
@@ -56,7 +56,7 @@ TEST(DeviationModel, TheFarTestIsConservative) {
       EXPECT_FALSE(says && too) << i;
     }
   }
-  EXPECT_GT(far, 2000);
+  EXPECT_GT(faint, 2000);
   EXPECT_GT(exceeded, 2000);
 }
 

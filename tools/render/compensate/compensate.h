@@ -49,12 +49,12 @@ struct Uncovered {
 // What lights a vertex of a path: lights by shadow rays, and VPLs.
 struct VertexLights {
   const LightSet& lights;
-  const SpatialLightSampler* spatial;  // distribution of shadow rays; null: by power
+  const SpatialLightSampler* spatialLights;  // distribution of shadow rays; null: by power
   PointGatherFn vpls;
 };
 // Adds light to all receivers of a tile at once. The results have the light and the method's own
 // counts; `cut` counts transfers. Returns the number of rays besides the shadow rays.
-using CompensateTile =
+using CompensateTileFn =
     std::function<size_t(const TileReceivers&, const VertexLights&, std::span<Gathered>)>;
 
 // Thread-safe. If all functions are empty, nothing is compensated.
@@ -67,7 +67,7 @@ struct Compensation {
   std::function<Uncovered(const SurfacePoint& point, float distance,
                           const ReachGrid::Lookup* coverLookup, Rng& rng)>
       uncovered;
-  CompensateTile tile = {};  // takes the place of rays
+  CompensateTileFn tile = {};                           // takes the place of rays
   bool byRays() const { return uncovered != nullptr; }  // whether near-field rays compensate
 };
 

@@ -20,12 +20,12 @@ constexpr std::string_view kFirstHitWork = "first hits";
 
 // The rows of a crop, one after the other. `perPixel`: values of each pixel.
 template <typename T>
-std::vector<T> cropped(const std::vector<T>& film, uint32_t width, const PixelBox& box,
+std::vector<T> cropped(const std::vector<T>& values, uint32_t width, const PixelBox& box,
                        size_t perPixel = 1) {
   const auto times = static_cast<std::ptrdiff_t>(perPixel);
   std::vector<T> out;
   for (int y = box.y0; y < box.y1; ++y) {
-    const auto row = film.begin() + static_cast<std::ptrdiff_t>(y) * width * times;
+    const auto row = values.begin() + static_cast<std::ptrdiff_t>(y) * width * times;
     out.insert(out.end(), row + box.x0 * times, row + box.x1 * times);
   }
   return out;
@@ -66,88 +66,101 @@ std::vector<std::vector<float>> takeFirstHits(const FilmState& state, size_t cha
   return tiles;
 }
 
-// `firstHits`: values of the layers of first hits.
-Image develop(const Film& size, const FilmOptions& options, FilmState& state, FilmStats& stats,
-              const FirstHitValues& firstHits) {
-  if (state.splats.pixels() > 0) {
-    for (size_t i = 0; i < state.pixels.size(); ++i) {
-      for (size_t c = 0; c < 3; ++c)
-        state.pixels[i].sum[PixelSums::kIndirect + c] += state.splats.sum(i, c);
-    }
+// Adds the light of photons to the indirect light of their pixels.
+void addSplatsTo(FilmState& state) {
+  if (state.splats.pixels() == 0) return;
+  for (size_t i = 0; i < state.pixels.size(); ++i) {
+    for (size_t c = 0; c < 3; ++c)
+      state.pixels[i].sum[PixelSums::kIndirect + c] += state.splats.sum(i, c);
   }
-  const PixelBox box = options.crop.value_or(
-      PixelBox{0, 0, static_cast<int>(size.width), static_cast<int>(size.height)});
-  if (options.gatherFilter)
-    applyFilter(
-        options.gatherFilter, size.width, box, [&](size_t) { return options.spp; }, state.pixels,
-        state.counts);
-  for (size_t k = 0; options.only != Only::Direct && k < state.groupSplats.pixels(); ++k) {
+}
+
+// The same by light group.
+void addGroupSplatsTo(FilmState& state) {
+  for (size_t k = 0; k < state.groupSplats.pixels(); ++k) {
     for (size_t c = 0; c < 3; ++c) state.groups.sums[3 * k + c] += state.groupSplats.sum(k, c);
   }
-  Film shown = size;
+}
+
+// Keeps only the pixels of the box. `width`: that of the film.
+void cropTo(const PixelBox& box, uint32_t width, FilmState& state) {
+  state.pixels = cropped(state.pixels, width, box);
+  state.counts = cropped(state.counts, width, box);
+  state.groups.forArrays(
+      [&](auto, auto& array, size_t perPixel) { array = cropped(array, width, box, perPixel); });
+}
+
+// `firstHits`: values of the layers of first hits.
+Image develop(const Film& film, const FilmOptions& options, FilmState& state, FilmStats& stats,
+              const FirstHitValues& firstHits) {
+  addSplatsTo(state);
+  const PixelBox box = options.crop.value_or(
+      PixelBox{0, 0, static_cast<int>(film.width), static_cast<int>(film.height)});
+  if (options.gatherFilter)
+    applyFilter(
+        options.gatherFilter, film.width, box, [&](size_t) { return options.spp; }, state.pixels,
+        state.counts);
+  if (options.shown != ShownLight::Direct) addGroupSplatsTo(state);
+  Film visible = film;
   if (options.crop) {
-    state.pixels = cropped(state.pixels, size.width, box);
-    state.counts = cropped(state.counts, size.width, box);
-    state.groups.forArrays([&](auto, auto& array, size_t perPixel) {
-      array = cropped(array, size.width, box, perPixel);
-    });
-    shown.width = static_cast<uint32_t>(box.x1 - box.x0);
-    shown.height = static_cast<uint32_t>(box.y1 - box.y0);
+    cropTo(box, film.width, state);
+    visible.width = static_cast<uint32_t>(box.x1 - box.x0);
+    visible.height = static_cast<uint32_t>(box.y1 - box.y0);
   }
-  Image image = blankImage(shown);
-  FilmSums film{state.pixels, state.counts, 1.0 / options.spp, {}, {}, &state.groups};
+  Image image = blankImage(visible);
+  FilmSums sums{state.pixels, state.counts, 1.0 / options.spp, {}, {}, &state.groups};
   std::vector<Vec3> groupsRedistributed;
   std::vector<BothLights> redistributed;
   if (options.redistributeFireflies)
-    film.redistributed = redistributed =
-        redistributeFireflies(film, options.only, shown.width, &groupsRedistributed);
-  addRadiance(film, options.only, image);
-  addGroups(state.groups, options.groups, film.perSample, groupsRedistributed, image);
-  for (const Layer* layer : options.layers) addLayer(*layer, film, image);
+    sums.redistributed = redistributed =
+        redistributeFireflies(sums, options.shown, visible.width, &groupsRedistributed);
+  addRadiance(sums, options.shown, image);
+  addGroups(state.groups, options.groups, sums.perSample, groupsRedistributed, image);
+  for (const Layer* layer : options.layers) addLayer(*layer, sums, image);
   addFirstHits(state.tiles, options.layers, firstHits, box, image);
-  stats = statsOf(film, uint64_t{options.spp} * state.pixels.size());
+  stats = statsOf(sums, uint64_t{options.spp} * state.pixels.size());
   stats.nonFinite += state.splats.nonFinite();
-  return options.crop ? onFilm(image, size, *options.crop) : image;
+  return options.crop ? onFilm(image, film, *options.crop) : image;
 }
 
 // Shows the pixels of a tile that have `samples` samples.
-void showTile(const FilmState& film, const Tile& tile, uint32_t samples, Only only,
+void showTile(const FilmState& state, const Tile& tile, uint32_t samples, ShownLight shown,
               const FilmPreview& preview) {
   if (preview.tile)
-    preview.tile(boxOf(tile), meanRadiance(film.tiles, tile, film.pixels, only, samples));
+    preview.tile(boxOf(tile), meanRadiance(state.tiles, tile, state.pixels, shown, samples));
 }
 
 // Shows the film after the share `done` of the photons. Samples are complete.
-void showPhotons(const Film& size, const FilmState& film, const FilmOptions& options, double done,
+void showPhotons(const Film& film, const FilmState& state, const FilmOptions& options, double done,
                  const FilmPreview& preview) {
-  std::vector<Vec3> radiance(film.pixels.size());
+  std::vector<Vec3> radiance(state.pixels.size());
   for (size_t i = 0; i < radiance.size(); ++i) {
-    radiance[i] = meanRadiance(film.pixels[i], options.only, options.spp);
-    if (options.only == Only::Direct) continue;
+    radiance[i] = meanRadiance(state.pixels[i], options.shown, options.spp);
+    if (options.shown == ShownLight::Direct) continue;
     for (size_t c = 0; c < 3; ++c)
-      radiance[i][c] += static_cast<float>(film.splats.sum(i, c) / (done * options.spp));
+      radiance[i][c] += static_cast<float>(state.splats.sum(i, c) / (done * options.spp));
   }
-  preview.image(imageOf(radiance, size));
+  preview.image(imageOf(radiance, film));
 }
 
-// Adds the light of all photons of the image, one for each camera sample, to the film.
-void addPhotons(const Film& size, const Splatter& splat, const FilmOptions& options,
-                FilmState& film, const ProgressFn& progress, const WorkControls& controls,
+// Adds the light of all photons of the image, one for each camera sample, to the state.
+void addPhotons(const Film& film, const Splatter& splat, const FilmOptions& options,
+                FilmState& state, const ProgressFn& progress, const WorkControls& controls,
                 const FilmPreview& preview) {
-  const uint64_t photons = uint64_t{options.spp} * film.pixels.size();
+  const uint64_t photons = uint64_t{options.spp} * state.pixels.size();
   const auto phase = progress.beginPhase("photons", controls.shard.shareOf(photons));
-  if (progress) progress(film.at.splats.traced);
+  if (progress) progress(state.at.splats.traced);
   addSplats(
-      splat, photons, film.at.splats, [&](const Splat& s) { film.add(s); }, progress, controls,
-      [&] { return film.encode(); },
+      splat, photons, state.at.splats, [&](const Splat& s) { state.add(s); }, progress, controls,
+      [&] { return state.encode(); },
       [&, pace = PreviewPace(nowS() + 1.0)]() mutable {
         if (!preview.image || !pace.due()) return;
         pace.show([&] {
-          const double done = double(film.at.splats.traced) / double(photons);
-          showPhotons(size, film, options, done, preview);
+          const double done = double(state.at.splats.traced) / double(photons);
+          showPhotons(film, state, options, done, preview);
         });
       });
-  film.splats.addNonFinite(film.at.splats.nonFinite);
+  state.splats.addNonFinite(state.at.splats.nonFinite);
 }
 
 }  // namespace
@@ -161,51 +174,51 @@ Image renderFilm(const Scene& scene, const Integrator& integrator, const FilmOpt
                  FilmStats& stats, const ProgressFn& progress, const WorkControls& controls,
                  const FilmPreview& preview) {
   const uint64_t key = streamKey(options.seed, RandomStream::PixelSamples);
-  FilmState film(scene.film, static_cast<bool>(integrator.splatPhotons), controls.shard,
-                 sampledPixels(scene.film, options), options.groups.size());
-  const Tiles& tiles = film.tiles;
-  if (!controls.state.empty()) film.decode(controls.state);
+  FilmState state(scene.film, static_cast<bool>(integrator.splatPhotons), controls.shard,
+                  sampledPixels(scene.film, options), options.groups.size());
+  const Tiles& tiles = state.tiles;
+  if (!controls.state.empty()) state.decode(controls.state);
   const uint64_t perRound = integrator.wholePixels ? options.spp : kSamplesPerRound;
   const uint64_t rounds = (options.spp + perRound - 1) / perRound;
   const auto samplesBefore = [&](uint64_t round) {
     return static_cast<uint32_t>(std::min<uint64_t>(options.spp, round * perRound));
   };
-  const auto state = [&] { return film.encode(); };
-  const uint64_t own = controls.shard.shareOf(tiles.pixelsMeeting(film.crop));
+  const auto encode = [&] { return state.encode(); };
+  const uint64_t own = controls.shard.shareOf(tiles.pixelsMeeting(state.crop));
   // What a checkpoint holds is reported at once, as it says nothing of the speed.
-  uint64_t doneBefore = own * samplesBefore(film.at.round);
-  for (size_t index = 0; index < film.done.size(); ++index) {
-    if (film.done[index] == 1)
+  uint64_t doneBefore = own * samplesBefore(state.at.round);
+  for (size_t index = 0; index < state.done.size(); ++index) {
+    if (state.done[index] == 1)
       doneBefore += uint64_t{tiles.at(index).pixels()} *
-                    (samplesBefore(film.at.round + 1) - samplesBefore(film.at.round));
+                    (samplesBefore(state.at.round + 1) - samplesBefore(state.at.round));
   }
   if (progress && doneBefore > 0) progress(doneBefore);
-  for (; film.at.round < rounds; ++film.at.round, film.beginRound()) {
-    const uint32_t begin = samplesBefore(film.at.round), end = samplesBefore(film.at.round + 1);
+  for (; state.at.round < rounds; ++state.at.round, state.beginRound()) {
+    const uint32_t begin = samplesBefore(state.at.round), end = samplesBefore(state.at.round + 1);
     const auto report = [&](const Tile& tile) {
       if (progress) progress(uint64_t{tile.pixels()} * (end - begin));
     };
     forUnitsLeft(
-        film.done, controls,
+        state.done, controls,
         [&](size_t index) {
           const Tile tile = tiles.at(index);
           sampleTile(scene, options.filter, integrator, key, tile,
-                     {begin, end, options.spp, options.spp}, film.groups.count,
+                     {begin, end, options.spp, options.spp}, state.groups.count,
                      [&](uint32_t p, const CameraSample& sample) {
                        const size_t i = tiles.pixelIndex(tile, p);
-                       if (addSample(sample.radiance, film.pixels[i], film.counts[i]))
-                         film.groups.add(i, sample, options.only, 1.0f);
+                       if (addSample(sample.radiance, state.pixels[i], state.counts[i]))
+                         state.groups.add(i, sample, options.shown, 1.0f);
                      });
-          showTile(film, tile, end, options.only, preview);
+          showTile(state, tile, end, options.shown, preview);
           report(tile);
         },
-        state);
+        encode);
   }
   if (integrator.splatPhotons)
-    addPhotons(scene.film, integrator.splatPhotons, options, film, progress, controls, preview);
-  if (!controls.sink) return develop(scene.film, options, film, stats, options.firstHits);
-  film.giveTo(*controls.sink);
-  giveFirstHits(film, options.firstHits, *controls.sink);
+    addPhotons(scene.film, integrator.splatPhotons, options, state, progress, controls, preview);
+  if (!controls.sink) return develop(scene.film, options, state, stats, options.firstHits);
+  state.giveTo(*controls.sink);
+  giveFirstHits(state, options.firstHits, *controls.sink);
   return blankImage(scene.film);
 }
 

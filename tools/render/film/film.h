@@ -11,7 +11,7 @@
 #include "tools/render/film/features/first_hits.h"
 #include "tools/render/film/film_preview.h"
 #include "tools/render/film/filter/gather_filter.h"
-#include "tools/render/film/integrator_interface.h"
+#include "tools/render/film/integrator.h"
 #include "tools/render/film/layers.h"
 #include "tools/render/pixel_filter.h"
 
@@ -20,13 +20,13 @@ namespace bnvpl {
 struct FilmOptions {
   uint32_t spp = 8;  // samples per pixel
   uint64_t seed = 1;
-  Only only = Only::Everything;
+  ShownLight shown = ShownLight::All;
   std::vector<const Layer*> layers;    // channels beside R, G, B
   bool redistributeFireflies = false;  // see fireflies.h; not with a crop
   PixelFilter filter = {};
   std::optional<PixelBox> crop = {};  // the pixels of the image; none: all
   FirstHitValues firstHits = {};      // traceFirstHits(); unused by joinFilm()
-  GatherFilter gatherFilter = {};     // smooths RadianceSample::gathered
+  GatherFilter gatherFilter = {};     // smooths RadianceSample::toFilter
   std::vector<std::string> groups = {};  // light groups to show; empty: none
 };
 
@@ -40,15 +40,15 @@ struct FilmStats {
 };
 
 // Sum of channel `c` of the light that the image shows.
-inline double shownRadiance(const PixelSums& p, Only only, size_t c) {
-  return (only != Only::Indirect ? p.sum[PixelSums::kDirect + c] : 0.0) +
-         (only != Only::Direct ? p.sum[PixelSums::kIndirect + c] : 0.0);
+inline double shownRadiance(const PixelSums& p, ShownLight shown, size_t c) {
+  return (shown != ShownLight::Indirect ? p.sum[PixelSums::kDirect + c] : 0.0) +
+         (shown != ShownLight::Direct ? p.sum[PixelSums::kIndirect + c] : 0.0);
 }
 
 // Mean radiance that the image shows after `samples` samples of the pixel.
-inline Vec3 meanRadiance(const PixelSums& p, Only only, double samples) {
+inline Vec3 meanRadiance(const PixelSums& p, ShownLight shown, double samples) {
   Vec3 mean;
-  for (size_t c = 0; c < 3; ++c) mean[c] = static_cast<float>(shownRadiance(p, only, c) / samples);
+  for (size_t c = 0; c < 3; ++c) mean[c] = static_cast<float>(shownRadiance(p, shown, c) / samples);
   return mean;
 }
 

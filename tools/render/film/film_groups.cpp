@@ -7,7 +7,7 @@
 
 namespace bnvpl {
 
-void FilmGroups::add(size_t pixel, const CameraSample& sample, Only only, float share) {
+void FilmGroups::add(size_t pixel, const CameraSample& sample, ShownLight shown, float share) {
   if (count == 0) return;
   const Vec3 *emission = sample.groups.emission().sums, *direct = sample.groups.direct().sums,
              *indirect = sample.groups.indirect().sums;
@@ -15,13 +15,13 @@ void FilmGroups::add(size_t pixel, const CameraSample& sample, Only only, float 
   double* sum = &sums[pixel * sumsPerPixel()];
   for (uint32_t g = 0; g < count; ++g) {
     Vec3 light;
-    if (only != Only::Indirect) light += emission[g] + direct[g];
-    if (only != Only::Direct)
+    if (shown != ShownLight::Indirect) light += emission[g] + direct[g];
+    if (shown != ShownLight::Direct)
       light += r.photons.groups ? indirect[g] + r.photons.groups[g] : indirect[g];
     for (size_t c = 0; c < 3; ++c) sum[3 * g + c] += double{light[c]} * double{share};
   }
   keepBrightest(pixel, 0, r.direct - r.emission, direct, share);
-  keepBrightest(pixel, 1, r.indirect - r.photons.all - r.gathered, indirect, share);
+  keepBrightest(pixel, 1, r.indirect - r.photons.all - r.toFilter, indirect, share);
   for (size_t k = 0; k < 2; ++k) photons[2 * pixel + k] = r.photons.brightestGroup[k];
 }
 

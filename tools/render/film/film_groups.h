@@ -31,7 +31,7 @@ struct FilmGroups {
   size_t brightestPerPixel() const { return size_t{4} * (1 + count); }
 
   // Adds a sample times `share`, which must be finite.
-  void add(size_t pixel, const CameraSample& sample, Only only, float share);
+  void add(size_t pixel, const CameraSample& sample, ShownLight shown, float share);
   void add(const Splat& splat, float share);
   // Part by group of a pixel's sample: `kind` 0 direct, 1 indirect; `rank` 0 or 1.
   const Vec3* brightestOf(size_t pixel, size_t kind, size_t rank) const {

@@ -11,8 +11,8 @@
 
 namespace bnvpl {
 
-// Receivers of the film so far; any may be empty. They see what the image would be by now, but for
-// fireflies in tiles, which are redistributed over the whole film at the end.
+// Callbacks that show the film so far; any may be empty. They get what the image would be by now,
+// but for fireflies in tiles, which are redistributed over the whole film at the end.
 struct FilmPreview {
   // Radiance of the pixels of a tile, row by row, W/(m2 sr). Called from any thread.
   std::function<void(const PixelBox& tile, std::span<const Vec3> radiance)> tile = {};

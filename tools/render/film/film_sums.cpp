@@ -23,19 +23,19 @@ Image imageOf(std::span<const Vec3> radiance, const Film& film) {
 }
 
 std::vector<Vec3> meanRadiance(const Tiles& tiles, const Tile& tile,
-                               std::span<const PixelSums> sums, Only only, double samples) {
+                               std::span<const PixelSums> sums, ShownLight shown, double samples) {
   std::vector<Vec3> radiance(tile.pixels());
   for (uint32_t p = 0; p < tile.pixels(); ++p)
-    radiance[p] = meanRadiance(sums[tiles.pixelIndex(tile, p)], only, samples);
+    radiance[p] = meanRadiance(sums[tiles.pixelIndex(tile, p)], shown, samples);
   return radiance;
 }
 
-void addRadiance(const FilmSums& film, Only only, Image& image) {
+void addRadiance(const FilmSums& film, ShownLight shown, Image& image) {
   for (size_t c = 0; c < 3; ++c) {
     std::vector<float>& data = image.add(std::string(1, "RGB"[c]));
     for (size_t i = 0; i < data.size(); ++i) {
       const BothLights redistributed = film.redistributedOf(i);
-      data[i] = static_cast<float>(shownRadiance(film.sums[i], only, c) * film.perSample +
+      data[i] = static_cast<float>(shownRadiance(film.sums[i], shown, c) * film.perSample +
                                    double{redistributed[0][c]} + double{redistributed[1][c]});
     }
   }

@@ -31,10 +31,10 @@ Image imageOf(std::span<const Vec3> radiance, const Film& film);
 
 // Mean radiance of the pixels of a tile, row by row, of which `sums` have `samples` samples.
 std::vector<Vec3> meanRadiance(const Tiles& tiles, const Tile& tile,
-                               std::span<const PixelSums> sums, Only only, double samples);
+                               std::span<const PixelSums> sums, ShownLight shown, double samples);
 
-// Adds R, G, B of the light that `only` shows.
-void addRadiance(const FilmSums& film, Only only, Image& image);
+// Adds R, G, B of the light that is `shown`.
+void addRadiance(const FilmSums& film, ShownLight shown, Image& image);
 // Adds a layer's channels; none for layers of first hits, which first_hits.h adds.
 void addLayer(const Layer& layer, const FilmSums& film, Image& image);
 

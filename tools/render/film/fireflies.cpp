@@ -22,23 +22,23 @@ constexpr size_t kLocal = 3;
 // A firefly is not moved where the filtered light is below this share of its own.
 constexpr float kDark = 1e-6f;
 
-bool isShown(size_t kind, Only only) {
-  return only == Only::Everything || (kind == 0) == (only == Only::Direct);
+bool isShown(size_t kind, ShownLight shown) {
+  return shown == ShownLight::All || (kind == 0) == (shown == ShownLight::Direct);
 }
 
 double samplesOf(const FilmSums& film, size_t i) {
   return film.passes.empty() ? 1.0 / film.perSample : double(film.passes[i].samples);
 }
 
-FilmValues shownLight(const FilmSums& film, Only only) {
-  FilmValues shown(film.sums.size());
-  parallelFor(shown.size(), 1024, [&](size_t i) {
+FilmValues meanShownRadiance(const FilmSums& film, ShownLight shown) {
+  FilmValues radiance(film.sums.size());
+  parallelFor(radiance.size(), 1024, [&](size_t i) {
     double sum = 0.0;
-    for (size_t c = 0; c < 3; ++c) sum += shownRadiance(film.sums[i], only, c) / 3.0;
-    shown[i] = static_cast<float>(sum * film.perSample);
-    if (!std::isfinite(shown[i])) shown[i] = 0.0f;
+    for (size_t c = 0; c < 3; ++c) sum += shownRadiance(film.sums[i], shown, c) / 3.0;
+    radiance[i] = static_cast<float>(sum * film.perSample);
+    if (!std::isfinite(radiance[i])) radiance[i] = 0.0f;
   });
-  return shown;
+  return radiance;
 }
 
 // S_0 applied to 1: the share of the kernel that edges leave.
@@ -57,14 +57,14 @@ FilmValues meanAround(const SurfaceFilter& filter, const FilmValues& ones,
 // Calls fn(kind, contribution to the pixel, rank) for the brightest samples and photons of pixel i.
 // Kind 0 is direct, kind 1 indirect light, kind 2 photons.
 template <typename Fn>
-void forBrightest(const FilmSums& film, size_t i, Only only, const Fn& fn) {
+void forBrightest(const FilmSums& film, size_t i, ShownLight shown, const Fn& fn) {
   const auto perSample = static_cast<float>(film.perSample);
   for (const size_t kind : {0u, 1u}) {
-    if (!isShown(kind, only)) continue;
+    if (!isShown(kind, shown)) continue;
     for (size_t k = 0; k < PixelSums::kBrightest; ++k)
       fn(kind, film.sums[i].brightest[kind][k] * perSample, k);
   }
-  if (!isShown(1, only)) return;
+  if (!isShown(1, shown)) return;
   for (size_t k = 0; k < PixelSums::kBrightest; ++k)
     fn(kPhotonKind, film.sums[i].photon(k) * perSample, k);
 }
@@ -85,18 +85,18 @@ void addExcess(const FilmSums& film, size_t i, size_t kind, size_t rank, float e
 
 // Excess e_i of each pixel's direct and indirect light, and by light group unless `byGroup` is
 // empty.
-std::vector<BothLights> excessOf(const FilmSums& film, Only only, const FilmValues& shown,
+std::vector<BothLights> excessOf(const FilmSums& film, ShownLight shown, const FilmValues& radiance,
                                  const FilmValues& smoothed, const FilmValues& ones,
                                  std::vector<Vec3>& byGroup) {
-  std::vector<BothLights> excess(shown.size());
-  parallelFor(shown.size(), 256, [&](size_t i) {
-    float others = shown[i];
-    forBrightest(film, i, only, [&](size_t, Vec3 light, size_t) { others -= mean(light); });
+  std::vector<BothLights> excess(radiance.size());
+  parallelFor(radiance.size(), 256, [&](size_t i) {
+    float others = radiance[i];
+    forBrightest(film, i, shown, [&](size_t, Vec3 light, size_t) { others -= mean(light); });
     // Mean of the surroundings without these samples.
-    const float around = (smoothed[i] - SurfaceFilter::kCentre * (shown[i] - others)) / ones[i];
+    const float around = (smoothed[i] - SurfaceFilter::kCentre * (radiance[i] - others)) / ones[i];
     const double share = std::max(kMinShare, kTimesItsShare / samplesOf(film, i)) *
                          double{std::max({0.0f, others, around})};
-    forBrightest(film, i, only, [&](size_t kind, Vec3 light, size_t rank) {
+    forBrightest(film, i, shown, [&](size_t kind, Vec3 light, size_t rank) {
       const size_t shownKind = std::min<size_t>(kind, 1);
       const double bound = kTimes[shownKind] * share, own{magnitude(light)};
       if (!(own > bound)) return;
@@ -105,7 +105,7 @@ std::vector<BothLights> excessOf(const FilmSums& film, Only only, const FilmValu
       if (!byGroup.empty()) addExcess(film, i, kind, rank, part, light, byGroup);
     });
     // A bright pixel in dark surroundings keeps its light.
-    if (!(around > 1e-5f * std::fabs(shown[i])) || !isFinite(excess[i][0]) ||
+    if (!(around > 1e-5f * std::fabs(radiance[i])) || !isFinite(excess[i][0]) ||
         !isFinite(excess[i][1])) {
       excess[i] = {};
       if (!byGroup.empty())
@@ -142,9 +142,9 @@ FilmValues lumpsOf(std::span<const BothLights> excess, size_t width) {
 // Light L of the surface: that of the samples without excess, scaled to include the excess of the
 // surroundings, which may be most of the light in a dark corner.
 FilmValues surfaceLight(const SurfaceFilter& filter, const FilmValues& ones,
-                        const FilmValues& shown, const FilmValues& excess) {
-  FilmValues rest(shown.size());
-  for (size_t i = 0; i < rest.size(); ++i) rest[i] = std::max(0.0f, shown[i] - excess[i]);
+                        const FilmValues& radiance, const FilmValues& excess) {
+  FilmValues rest(radiance.size());
+  for (size_t i = 0; i < rest.size(); ++i) rest[i] = std::max(0.0f, radiance[i] - excess[i]);
   FilmValues light = meanAround(filter, ones, rest), wide = light, added = excess;
   for (size_t level = 0; level <= kLocal; ++level) {
     wide = filter.smooth(wide, level);
@@ -219,22 +219,22 @@ void move(const SurfaceFilter& filter, std::span<const Target> targets, const Fi
 
 }  // namespace
 
-std::vector<BothLights> redistributeFireflies(const FilmSums& film, Only only, uint32_t width,
-                                              std::vector<Vec3>* groups) {
+std::vector<BothLights> redistributeFireflies(const FilmSums& film, ShownLight shown,
+                                              uint32_t width, std::vector<Vec3>* groups) {
   const SurfaceFilter within(film.sums, width, SurfaceFilter::Edges::Stop),
       over(film.sums, width, SurfaceFilter::Edges::Ignore);
-  const FilmValues ones = smoothedOnes(within), shown = shownLight(film, only);
+  const FilmValues ones = smoothedOnes(within), radiance = meanShownRadiance(film, shown);
   const size_t count = film.groups && groups ? film.groups->count : 0;
   std::vector<Vec3> byGroup(film.sums.size() * count);
   if (groups) groups->assign(byGroup.size(), Vec3{});
   const std::vector<BothLights> excess =
-      excessOf(film, only, shown, over.smooth(shown, 0), smoothedOnes(over), byGroup);
+      excessOf(film, shown, radiance, over.smooth(radiance, 0), smoothedOnes(over), byGroup);
   FilmValues both = meansOf(excess, 0);
   const FilmValues indirect = meansOf(excess, 1);
   for (size_t i = 0; i < both.size(); ++i) both[i] += indirect[i];
   std::vector<BothLights> change(excess.size());
   if (std::ranges::none_of(both, [](float e) { return e != 0.0f; })) return change;
-  const FilmValues light = surfaceLight(within, ones, shown, both);
+  const FilmValues light = surfaceLight(within, ones, radiance, both);
   const FilmValues lumps = lumpsOf(excess, width);
   std::vector<Target> withinEdges = chooseTargets(within, light, both, lumps);
   const std::vector<Target> overEdges = chooseOverEdges(over, light, both, lumps, withinEdges);
@@ -243,7 +243,7 @@ std::vector<BothLights> redistributeFireflies(const FilmSums& film, Only only, u
     move(over, overEdges, light, of, to);
   };
   for (const size_t kind : {0u, 1u}) {
-    if (!isShown(kind, only)) continue;
+    if (!isShown(kind, shown)) continue;
     for (size_t c = 0; c < 3; ++c) {
       moveBoth([&](size_t i) { return excess[i][kind][c]; },
                [&](size_t i) -> float& { return change[i][kind][c]; });

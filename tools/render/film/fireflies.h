@@ -39,9 +39,9 @@
 namespace bnvpl {
 
 // Change of each pixel's direct and indirect light, W/(m2 sr), for a film whose rows have `width`
-// pixels. Light that `only` does not show is not changed.
+// pixels. Light that is not `shown` does not change.
 // `groups`: where film.groups is set, receives the change of each light group of each pixel.
-std::vector<BothLights> redistributeFireflies(const FilmSums& film, Only only, uint32_t width,
-                                              std::vector<Vec3>* groups = nullptr);
+std::vector<BothLights> redistributeFireflies(const FilmSums& film, ShownLight shown,
+                                              uint32_t width, std::vector<Vec3>* groups = nullptr);
 
 }  // namespace bnvpl

@@ -31,7 +31,7 @@ struct PixelSums {
     kHits = 16,
     kCompensated = 17,
     kPhotons = 20,  // the two brightest photons of the pixel, equal in all of its samples
-    kGathered = 26
+    kToFilter = 26
   };
   static constexpr size_t kBrightest = 2;
 

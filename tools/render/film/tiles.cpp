@@ -14,7 +14,7 @@ namespace {
 bool isFinite(const RadianceSample& r) {
   using bnvpl::isFinite;
   return isFinite(r.direct + r.indirect) && isFinite(r.clamped) && isFinite(r.compensated) &&
-         isFinite(r.gathered) && isFinite(r.albedo) && isFinite(r.normal) && std::isfinite(r.depth);
+         isFinite(r.toFilter) && isFinite(r.albedo) && isFinite(r.normal) && std::isfinite(r.depth);
 }
 
 void addTo(PixelSums& p, size_t channel, Vec3 v) {
@@ -67,12 +67,12 @@ bool addSample(const RadianceSample& r, PixelSums& pixel, PixelCounts& counts) {
   addTo(pixel, PixelSums::kDirect, r.direct);
   addTo(pixel, PixelSums::kIndirect, r.indirect);
   pixel.keepBrightest(0, r.direct - r.emission);
-  pixel.keepBrightest(1, r.indirect - r.photons.all - r.gathered);
+  pixel.keepBrightest(1, r.indirect - r.photons.all - r.toFilter);
   for (size_t k = 0; k < PixelSums::kBrightest; ++k)
     addTo(pixel, PixelSums::kPhotons + 3 * k, r.photons.brightest[k]);
   addTo(pixel, PixelSums::kClamped, r.clamped);
   addTo(pixel, PixelSums::kCompensated, r.compensated);
-  addTo(pixel, PixelSums::kGathered, r.gathered);
+  addTo(pixel, PixelSums::kToFilter, r.toFilter);
   addTo(pixel, PixelSums::kAlbedo, r.albedo);
   addTo(pixel, PixelSums::kNormal, r.normal);
   pixel.sum[PixelSums::kDepth] += double{r.depth};

@@ -9,7 +9,7 @@
 
 #include "formats/image/image.h"
 #include "scene/scene.h"
-#include "tools/render/film/integrator_interface.h"
+#include "tools/render/film/integrator.h"
 #include "tools/render/film/layers.h"
 #include "tools/render/pixel_filter.h"
 

@@ -11,11 +11,11 @@
 #include "core/random.h"
 #include "tools/common/stage/method.h"
 #include "tools/render/film/filter/gather_filter.h"
+#include "tools/render/film_points.h"
 #include "tools/render/light_tree/light_tree.h"
 #include "tools/render/sample.h"
 #include "tools/render/tile_dimensions.h"
 #include "transport/bsdf.h"
-#include "transport/lights/lights.h"
 #include "transport/virtual_light/virtual_light.h"
 
 namespace bnvpl {
@@ -43,7 +43,9 @@ struct TileReceivers : TileLayout {
   // Variance, relative to the tile's squared light, that a further shadow ray of a sample must
   // remove to be efficient (SampleAllocation); 0 if unknown.
   double marginalCost = 0.0;
-  float otherLight = 0.0f;  // mean light of the tile besides the VPLs', channels added, W/(m2 sr)
+  // Light of the tile that does not come from VPLs, and the film's floor (SampleAllocation),
+  // channels added, W/(m2 sr).
+  float lightBesidesVpls = 0.0f;
   // Light of the film's median tile, in the same unit.
   float medianTileLight = std::numeric_limits<float>::infinity();
 };
@@ -61,23 +63,12 @@ struct Gather {
   TileGatherFn tile;
   PointGatherFn point = {};  // empty: PointGather (gather/point_gather.h)
   bool wholePixels = false;  // every call needs all samples of its pixels
-  std::vector<PlanCount> planned = {};  // what the method counted while it prepared the film
-};
-
-// The shading point of each pixel, row by row; its triangle is kNone where there is none.
-// `direct`: direct light that the camera path collects before it, such as emission, mean of the
-// channels, W/(m2 sr).
-struct FilmPoints {
-  uint32_t width = 0, height = 0;
-  std::vector<SurfacePoint> points;
-  std::vector<float> direct;
+  std::vector<FilmCount> filmCounts = {};  // what the method counted while it prepared the film
 };
 
 // Inputs of a method, borrowed until the image is done.
 struct GatherInputs {
   const Accelerator& accel;
-  const LightSet& lights;
-  const VplTable& lit;  // rows that `vpls` names
   const VplLights& vpls;
   const LightTree& tree;  // empty if there are no VPLs
   uint64_t seed;

@@ -113,7 +113,7 @@ void ClusterDraws::add(std::span<const uint32_t> cluster, std::span<const double
 
 Gathered ClusterDraws::gather(const GatherInputs& in, const TileReceivers& tile, size_t i) const {
   Gathered out;
-  const std::span<const VplDraw> draws = of(tile, tile.firstSample + i / tile.pixels);
+  const std::span<const VplDraw> draws = of(tile, tile.sampleIndex(i));
   const ShadowTest test(in.accel, in.vpls, *tile.bsdf[i], tile.groupsOf(i));
   for (const VplDraw& d : draws) test.add(d.index, d.weight, out);
   out.cut = static_cast<uint32_t>(draws.size());

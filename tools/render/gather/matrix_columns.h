@@ -47,7 +47,7 @@ class Columns {
 };
 
 // What is evaluated of a matrix, for --stats.
-inline std::vector<PlanCount> entriesOf(size_t rows, size_t columns) {
+inline std::vector<FilmCount> entriesOf(size_t rows, size_t columns) {
   const double entries = double(rows) * double(columns);
   return {{"matrix_rows", "rows of the matrix evaluated", double(rows)},
           {"matrix_entries", "entries of these rows", entries}};

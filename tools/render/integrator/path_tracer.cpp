@@ -10,7 +10,7 @@ void PathTracer::render(const TileSamples& tile) const {
 }
 
 RadianceSample PathTracer::trace(const CameraSample& sample, Rng& rng) const {
-  return tracePath(accel_, lights_, sample, only_, indirect_, rng,
+  return tracePath(accel_, lights_, sample, shown_, indirect_, rng,
                    [&](const Bsdf& bsdf, Vec3 throughput, bool directOnly, RadianceSample& out) {
                      addOutgoingRadiance(accel_, lights_, bsdf, throughput,
                                          {maxBounces_, directOnly}, nullptr, rng, out.direct,

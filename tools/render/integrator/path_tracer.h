@@ -1,6 +1,6 @@
 #pragma once
 
-#include "tools/render/integrator/integrator.h"
+#include "tools/render/integrator/integrator_method.h"
 #include "tools/render/stage_options.h"
 
 namespace bnvpl {
@@ -21,9 +21,13 @@ class PathTracer {
  public:
   // `indirect`: whether to add indirect light at points that the camera sees directly. If not, the
   // LightTracer does.
-  PathTracer(const Accelerator& accel, const LightSet& lights, unsigned maxBounces, Only only,
-             bool indirect = true)
-      : accel_(accel), lights_(lights), maxBounces_(maxBounces), only_(only), indirect_(indirect) {}
+  PathTracer(const Accelerator& accel, const LightSet& lights, unsigned maxBounces,
+             ShownLight shown, bool indirect = true)
+      : accel_(accel),
+        lights_(lights),
+        maxBounces_(maxBounces),
+        shown_(shown),
+        indirect_(indirect) {}
   void render(const TileSamples& tile) const;
 
  private:
@@ -32,7 +36,7 @@ class PathTracer {
   const Accelerator& accel_;
   const LightSet& lights_;
   unsigned maxBounces_;
-  Only only_;
+  ShownLight shown_;
   bool indirect_;
 };
 

@@ -1,10 +1,8 @@
-// Options of the methods that use a TileIntegrator, and the parts that they make.
+// Options of the methods that use a TileIntegrator.
 #pragma once
 
-#include "tools/render/integrator/integrator.h"
+#include "tools/common/options/option.h"
 #include "tools/render/stage_options.h"
-#include "tools/render/tile/film_rays.h"
-#include "tools/render/tile/tile_integrator.h"
 
 namespace bnvpl {
 
@@ -38,18 +36,5 @@ inline uint64_t preparedSpp(const Values& options) {
 }
 // Limit of the photons of an image, which are made once for all of its passes and shards.
 inline constexpr uint64_t kMaxCausticPhotons = 16000000;
-
-// Adds the parts for direct light, with `lightRays` shadow rays from each sample. Adds nothing if
-// the image shows only indirect light.
-void addDirectLight(const IntegratorInputs& in, const Values& options, const FilmRays& filmRays,
-                    const FilmPoints& filmPoints, unsigned lightRays, TileParts& out);
-// Returns null if the scene cannot have caustics. `tile` has the rays that find the same light;
-// `spp`: samples of a pixel. `bounces`: see Caustics.
-std::unique_ptr<const Caustics> makeCaustics(const IntegratorInputs& in, const TileParts& tile,
-                                             uint64_t photons, uint64_t spp, unsigned bounces);
-ControlVariateFn makeControlVariate(const IntegratorInputs& in, const FilmPoints& filmPoints);
-// Runs the pilot of --allocate.
-SampleAllocation allocationOf(const IntegratorInputs& in, const Values& options,
-                              const TileIntegrator& integrator);
 
 }  // namespace bnvpl

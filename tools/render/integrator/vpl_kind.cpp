@@ -1,7 +1,7 @@
 #include "tools/render/integrator/vpl_kind.h"
 
 #include "core/errors.h"
-#include "tools/render/integrator/integrator.h"
+#include "tools/render/integrator/integrator_method.h"
 
 namespace bnvpl {
 
@@ -15,7 +15,7 @@ VplKind vplKindOf(const Values& options) {
   return options.has(kLightKey) ? vplKindNamed(options[kLightKey]) : VplKind{};
 }
 
-void requireTakenLight(const Values& options) {
+void requireKindCompensated(const Values& options) {
   if (isFromCentre(vplKindOf(options))) return;
   const std::string& name = options[kLightKey];
   const CompensateMethod* compensate = compensationOf(options);

@@ -9,6 +9,6 @@ namespace bnvpl {
 // The default kind for methods without the option.
 VplKind vplKindOf(const Values& options);
 // Throws UsageError if the compensation cannot take the kind of light.
-void requireTakenLight(const Values& options);
+void requireKindCompensated(const Values& options);
 
 }  // namespace bnvpl

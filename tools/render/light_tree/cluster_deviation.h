@@ -78,7 +78,8 @@ class DeviationModel {
 
 // Whether the cluster's light is at most `allowed` at all receivers within the bounds, whose BSDFs
 // are at most `brightest` (1/sr). The test ignores cosines.
-inline bool surelyFar(const LightNode& n, float allowed, const Bounds& receivers, float brightest) {
+inline bool surelyFaint(const LightNode& n, float allowed, const Bounds& receivers,
+                        float brightest) {
   const float light = (n.intensity.x + n.intensity.y + n.intensity.z) * brightest;
   const Vec3 gap =
       max(max(n.bounds.lower - receivers.upper, receivers.lower - n.bounds.upper), Vec3{});

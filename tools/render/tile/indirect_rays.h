@@ -1,5 +1,5 @@
 // Rays for indirect light from shading points. A method of --integrator implements IndirectRays for
-// its TileIntegrator.
+// its TileIntegrator. With --direct-samples 1 they are also the BSDF rays of direct light's MIS.
 #pragma once
 
 #include <algorithm>
@@ -34,18 +34,18 @@ struct RayContributions {
   LightGroupSink vertexLightGroups() { return sinkOf(2); }
 
   // Adds the mean of the rays, with `reused` in place of the mean of vertexLight: the light of the
-  // vertices that the group's rays have found.
-  void addMeanTo(RadianceSample& out, Vec3 reused) const {
+  // vertices that the group's rays have found. `withDirect`: whether direct light counts.
+  void addMeanTo(RadianceSample& out, Vec3 reused, bool withDirect) const {
     if (rays == 0) return;
     const float each = 1.0f / static_cast<float>(rays);
     const Vec3 difference = reused - vertexLight * each;
-    out.direct += direct * each;
+    if (withDirect) out.direct += direct * each;
     out.indirect += indirect * each + difference;
     out.clamped += clamped * each;
     out.compensated += compensated * each + difference;
     out.shadowRays += shadowRays;
   }
-  // The same by light group. `withDirect`: whether direct light counts.
+  // The same by light group.
   void addMeanTo(const SampleGroups& out, const Vec3* reused, bool withDirect) const {
     if (rays == 0) return;
     const float each = 1.0f / static_cast<float>(rays);
@@ -66,6 +66,9 @@ struct RayOrigin {
   const LearnedLight& learned;  // how its shadow rays choose lights, for MIS with the rays
   PhotonMis photons;            // MIS with caustic photons
   bool reuse = false;           // whether other samples reuse the vertices
+  // Number of rays from the point that MIS with shadow rays and photons assumes; other numbers
+  // remain unbiased.
+  unsigned misRays = 1;
 };
 
 // The first segment of a ray.
@@ -78,11 +81,10 @@ struct FirstSegment {
 
 // Samples and traces `count` rays in batches, so that their memory accesses overlap. Calls
 // hits(batch) with the hits of a batch, then follow(k, segment) for its k-th ray, which adds to
-// `out`. `misRays`: the number of rays from the shading point that MIS weights assume.
+// `out`.
 template <typename Hits, typename Follow>
-void sendRays(const Accelerator& accel, const RayOrigin& from, unsigned misRays, unsigned count,
-              uint32_t first, uint64_t key, RayContributions& out, const Hits& hits,
-              const Follow& follow) {
+void sendRays(const Accelerator& accel, const RayOrigin& from, unsigned count, uint32_t first,
+              uint64_t key, RayContributions& out, const Hits& hits, const Follow& follow) {
   constexpr size_t kBatch = Accelerator::kBatch;
   std::array<Ray, kBatch> rays;
   std::array<SurfacePoint, kBatch> found;
@@ -98,8 +100,8 @@ void sendRays(const Accelerator& accel, const RayOrigin& from, unsigned misRays,
       rays[alive] = spawnRay(accel, point, next);
       segments[alive] = {next.wi,
                          from.throughput * next.weight,
-                         {next.pdf * static_cast<float>(misRays), point.position, LightChoice::Each,
-                          from.learned, from.photons},
+                         {next.pdf * static_cast<float>(from.misRays), point.position,
+                          LightChoice::Each, from.learned, from.photons},
                          &found[alive],
                          rng};
       ++alive;

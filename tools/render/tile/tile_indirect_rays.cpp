@@ -72,11 +72,12 @@ void TileIndirectRays::reuse(size_t everyNth) {
 }
 
 void TileIndirectRays::addTo(std::span<CameraSample> samples) const {
+  const bool withDirect = !parts_.directSamples;  // these find it themselves
   for (size_t i = 0; i < found_.size(); ++i) {
-    found_[i].addMeanTo(samples[i].radiance, reused_[i].radiance);
+    found_[i].addMeanTo(samples[i].radiance, reused_[i].radiance, withDirect);
     if (parts_.countsContinued)
       samples[i].radiance.counts[parts_.gatherCounters] = found_[i].continued;
-    found_[i].addMeanTo(samples[i].groups, reusedGroups(i), !parts_.directSamples);
+    found_[i].addMeanTo(samples[i].groups, reusedGroups(i), withDirect);
   }
 }
 
@@ -93,8 +94,8 @@ void TileIndirectRays::sendFrom(size_t sample, unsigned rays, uint64_t key) {
                      parts_.caustics && path.specularBounces == 0
                          ? parts_.caustics->photonMis(path.hit, tile_.samples[sample].origin)
                          : PhotonMis{},
-                     parts_.reuse > 1},
-                    rays, sampleIndexOf(tile_, sample) * rays, key, found_[sample]);
+                     parts_.reuse > 1, parts_.raysEach},
+                    rays, tile_.sampleIndex(sample) * rays, key, found_[sample]);
 }
 
 void TileIndirectRays::reuseWithin(std::span<const size_t> members) {
@@ -110,7 +111,7 @@ void TileIndirectRays::reuseWithin(std::span<const size_t> members) {
     reused_[members[k]] = {throughput * group[k].radiance,
                            double{dot(throughput * throughput, group[k].squares)}};
     for (uint32_t g = 0; g < tile_.groups; ++g)
-      reusedGroups(members[k])[g] = throughput * group[k].groups[g];
+      reusedGroups(members[k])[g] = throughput * group[k].radianceByLightGroup[g];
   }
 }
 

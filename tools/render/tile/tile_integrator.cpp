@@ -1,6 +1,6 @@
 #include "tools/render/tile/tile_integrator.h"
 
-#include <cmath>
+#include <optional>
 
 #include "tools/render/camera_path.h"
 #include "tools/render/tile/tile_indirect_rays.h"
@@ -11,34 +11,37 @@ double TileIntegrator::render(const TileSamples& tile, const SampleAllocation& a
   const size_t count = tile.samples.size();
   const LearnedStrata strata = parts_.lights ? parts_.lights->at(tile.x, tile.y) : LearnedStrata{};
   const LearnedLight learned{parts_.lights ? &strata : nullptr, parts_.lightRays};
-  const bool directAlone = parts_.directSamples && only_ == Only::Direct;
+  const bool directAlone = parts_.directSamples && shown_ == ShownLight::Direct;
   const ShadingPoints points = traceCameraPaths(tile, learned);
-  DirectSamples::Pilot pilot;
+  std::optional<DirectSamples::Pilot> pilot;
+  Vec3 meanDirect;
   if (parts_.directSamples) {
     pilot = parts_.directSamples->pilot(tile, learned.strata);
-  } else if (only_ != Only::Indirect) {
-    pilot.light = addDirectLight(tile, points, learned);
+    meanDirect = pilot->light;
+  } else if (shown_ != ShownLight::Indirect) {
+    meanDirect = addDirectLight(tile, points, learned);
   }
   double cost = directAlone ? 0.0 : double(count) * cost::kCameraRay;
-  if (parts_.gather && only_ != Only::Direct) gatherVpls(tile, points, allocation, pilot.light);
-  if (parts_.compensateTile && only_ != Only::Direct) cost += compensateTile(tile, points);
+  if (parts_.gather && shown_ != ShownLight::Direct)
+    gatherVpls(tile, points, allocation, meanDirect);
+  if (parts_.compensateTile && shown_ != ShownLight::Direct) cost += compensateTile(tile, points);
   for (size_t i = 0; i < count; ++i) {
     const RadianceSample& radiance = tile.samples[i].radiance;
     cost += radiance.shadowRays + cost::kCluster * radiance.cut;
   }
-  if (parts_.rays) cost += addRays(tile, points, learned, allocation, pilot.light);
+  if (parts_.rays) cost += addRays(tile, points, learned, allocation, meanDirect);
   if (parts_.control) parts_.control(tile, points.paths);
   for (size_t i = 0; parts_.caustics && i < count; ++i) {
     const auto pixel = static_cast<uint32_t>(i % tile.pixels);
     RadianceSample& out = tile.samples[i].radiance;
-    out.photons = parts_.caustics->at(tile.x + pixel % tile.width, tile.y + pixel / tile.width);
+    out.photons = parts_.caustics->at(tile.pixelX(pixel), tile.pixelY(pixel));
     out.indirect += out.photons.all;
-    out.ofPixel += out.photons.all;
+    out.pixelLight += out.photons.all;
   }
   cost /= double(count);
-  if (parts_.directSamples) {
+  if (pilot) {
     cost +=
-        parts_.directSamples->render(tile, points.paths, learned.strata, pilot, cost, allocation);
+        parts_.directSamples->render(tile, points.paths, learned.strata, *pilot, cost, allocation);
   }
   return cost;
 }
@@ -52,15 +55,15 @@ ShadingPoints TileIntegrator::traceCameraPaths(const TileSamples& tile,
   out.bsdfs.reserve(count);
   const SpecularLightSampling specularLights{learned.strata, parts_.spatialLights};
   for (CameraSample& s : tile.samples) s.radiance = {};
-  if (parts_.directSamples && only_ == Only::Direct) return out;
+  if (parts_.directSamples && shown_ == ShownLight::Direct) return out;
   for (size_t i = 0; i < count; ++i) {
     CameraSample& s = tile.samples[i];
     const auto pixel = static_cast<uint32_t>(i % tile.pixels);
-    Rng rng = Rng::stratified(random64(tile.key, pixel, kDimCameraPath), sampleIndexOf(tile, i));
+    Rng rng = Rng::stratified(random64(tile.key, pixel, kDimCameraPath), tile.sampleIndex(i));
     out.paths[i] = traceCameraPath(accel_, lights_, s.origin, s.direction, s.weight, rng,
                                    s.radiance, specularLights, s.groups);
     if (parts_.visibleEmission && !parts_.directSamples)
-      parts_.visibleEmission->average(s.radiance, 1, tile, pixel, sampleIndexOf(tile, i),
+      parts_.visibleEmission->average(s.radiance, 1, tile, pixel, tile.sampleIndex(i),
                                       specularLights, s.groups);
     if (!out.paths[i].rough) continue;
     out.bsdf[i] = &out.bsdfs.emplace_back(accel_.scene(), out.paths[i].hit);
@@ -78,7 +81,7 @@ Vec3 TileIntegrator::addDirectLight(const TileSamples& tile, const ShadingPoints
     if (points.bsdf[i]) {
       const uint64_t key = random64(tile.key, i % tile.pixels, kDimLight);
       s.radiance.direct += points.paths[i].throughput *
-                           directAt(*points.bsdf[i], learned, sampleIndexOf(tile, i), key, s.rng,
+                           directAt(*points.bsdf[i], learned, tile.sampleIndex(i), key, s.rng,
                                     s.groups.direct().times(points.paths[i].throughput));
     }
     sum += unweighted(s.radiance.direct, s.weight);
@@ -115,11 +118,9 @@ void TileIntegrator::gatherVpls(const TileSamples& tile, const ShadingPoints& po
   if (tile.groups > 0) receivers.groupSums = groups.data();
   receivers.marginalCost = allocation.marginalCost;
   if (allocation.marginalCost > 0.0) {
-    // floorLight and medianLight are squares summed over the channels. For grey light of square q
-    // the sum of the channels is sqrt(3 q).
-    receivers.otherLight = meanDirect.x + meanDirect.y + meanDirect.z +
-                           static_cast<float>(std::sqrt(3.0 * allocation.floorLight));
-    receivers.medianTileLight = static_cast<float>(std::sqrt(3.0 * allocation.medianLight));
+    receivers.lightBesidesVpls =
+        meanDirect.x + meanDirect.y + meanDirect.z + allocation.floorOfChannelSums();
+    receivers.medianTileLight = allocation.medianOfChannelSums();
   }
   std::vector<Vec3> weights;
   if (parts_.gathersPixelSums) {
@@ -135,8 +136,8 @@ void TileIntegrator::gatherVpls(const TileSamples& tile, const ShadingPoints& po
     const Gathered& from = gathered[sums ? i % tile.pixels : i];
     const Vec3 factor = sums ? part : points.paths[i].throughput;
     out.indirect += factor * from.radiance;
-    if (sums) out.ofPixel += factor * from.radiance;
-    if (parts_.gathersForFilter) out.gathered += factor * from.radiance;
+    if (sums) out.pixelLight += factor * from.radiance;
+    if (parts_.gathersForFilter) out.toFilter += factor * from.radiance;
     out.clamped += factor * from.clamped;
     out.cut += gathered[i].cut;
     out.shadowRays += gathered[i].shadowRays;
@@ -175,7 +176,7 @@ double TileIntegrator::addRays(const TileSamples& tile, const ShadingPoints& poi
                                const LearnedLight& learned, const SampleAllocation& allocation,
                                Vec3 meanDirect) const {
   TileIndirectRays tracing(parts_, accel_, tile, points, learned);
-  if (allocation.marginalCost > 0.0 && only_ != Only::Direct) {
+  if (allocation.marginalCost > 0.0 && shown_ != ShownLight::Direct) {
     tracing.sendAllocated(allocation, meanDirect);
   } else {
     tracing.send(parts_.raysEach);

@@ -11,8 +11,9 @@ namespace bnvpl {
 // Immutable and thread-safe.
 class TileIntegrator {
  public:
-  TileIntegrator(const Accelerator& accel, const LightSet& lights, TileParts parts, Only only)
-      : accel_(accel), lights_(lights), parts_(std::move(parts)), only_(only) {}
+  TileIntegrator(const Accelerator& accel, const LightSet& lights, TileParts parts,
+                 ShownLight shown)
+      : accel_(accel), lights_(lights), parts_(std::move(parts)), shown_(shown) {}
   // Fills in the radiance of the tile's samples. Without a marginal cost, parts have the numbers of
   // samples that options ask for. Returns the mean cost of a sample, in the units of cost::.
   double render(const TileSamples& tile, const SampleAllocation& allocation) const;
@@ -32,7 +33,7 @@ class TileIntegrator {
   const Accelerator& accel_;
   const LightSet& lights_;
   TileParts parts_;
-  Only only_;
+  ShownLight shown_;
 };
 
 }  // namespace bnvpl

@@ -52,8 +52,4 @@ struct ShadingPoints {
   size_t indexOf(size_t sample) const { return static_cast<size_t>(bsdf[sample] - bsdfs.data()); }
 };
 
-inline uint32_t sampleIndexOf(const TileLayout& tile, size_t sample) {
-  return tile.firstSample + static_cast<uint32_t>(sample / tile.pixels);
-}
-
 }  // namespace bnvpl

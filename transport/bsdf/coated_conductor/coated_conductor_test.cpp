@@ -21,6 +21,24 @@ TEST(CoatedConductor, KeepsToWhatEveryModelDoes) {
             "lacquer " + std::to_string(coat) + " over " + std::to_string(metal), 0.05f);
 }
 
+// VPLs send on what rough metal reflects below its coat.
+TEST(CoatedConductor, RoughMetalReflectsItsAlbedo) {
+  for (const float alpha : {0.35f, 0.6f, 1.0f})
+    for (const float thickness : {0.0f, 0.3f}) {
+      CoatedConductorModel m = lacquer(alpha, 0.0f);
+      m.roughness.alpha = Roughness::Alpha::Same;
+      m.coatThickness = Scalar(thickness);
+      const Scene scene = sceneOf(materialOf(m));
+      for (const Vec3 wo : views()) {
+        const SurfacePoint p = seenFrom(wo);
+        const Bsdf bsdf(scene, p);
+        expectClose(bsdf.roughAlbedo(), meanWeight(bsdf, LobeGroup::Rough), 0.015f,
+                    std::to_string(alpha) + " below " + std::to_string(thickness) + " from " +
+                        std::to_string(wo.z));
+      }
+    }
+}
+
 // Below a smooth coat, a mirror of reflectance 1 returns all light after any number of bounces.
 TEST(CoatedConductor, PerfectMirrorLosesNothing) {
   CoatedConductorModel m = lacquer(0, 0);

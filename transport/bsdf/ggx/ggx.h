@@ -55,6 +55,21 @@ struct Ggx {
     return normalize({alongX * h.x, alongY * h.y, std::max(1e-7f, h.z)});
   }
 
+  // Mean of fn(wi, h) over the light from wo that facets reflect once, a sum over visible normals.
+  template <typename Fn>
+  auto meanOverReflected(Vec3 wo, const Fn& fn) const {
+    decltype(fn(wo, wo)) sum{};
+    float all = 0.0f;
+    for (uint32_t i = 0; i < kGoldenPoints; ++i) {
+      const Vec3 h = sampleVisible(wo, goldenPoint(i)), wi = reflect(wo, h);
+      if (!(wi.z > 0.0f)) continue;
+      const float weight = visible(wo, wi) / visible(wo);
+      sum += fn(wi, h) * weight;
+      all += weight;
+    }
+    return all > 0.0f ? sum * (1.0f / all) : sum;
+  }
+
   // Upper bound of reflected() * wi.z over wi whose cosine with z is at most maxCosine, and with
   // the mirror image of wo at most cosMirror. The half vector deviates from z by at least half the
   // angle between wi and the mirror image; the other factors grow with wi.z.

@@ -115,6 +115,27 @@ TEST(MetallicRoughness, BaseReflectsItsAlbedo) {
         }
 }
 
+// A VPL sends on what the rough lobes reflect below a coat, which keeps more of what leaves at
+// grazing angles.
+TEST(MetallicRoughness, CoatedBaseReflectsItsAlbedo) {
+  for (const float metallic : {0.0f, 0.5f, 1.0f})
+    for (const float roughness : {0.0f, 0.3f, 0.6f, 0.8f, 1.0f})
+      for (const float coatRoughness : {0.0f, 0.3f, 0.5f}) {
+        MetallicRoughnessModel m = gltf(metallic, roughness);
+        m.clearcoat = 1.0f;
+        m.clearcoatRoughness = coatRoughness;
+        const Scene scene = sceneOf(materialOf(m));
+        for (const Vec3 wo : views()) {
+          const SurfacePoint p = seenFrom(wo);
+          const Bsdf bsdf(scene, p);
+          const float leaves = mean(meanWeight(bsdf, LobeGroup::Rough));
+          EXPECT_NEAR(mean(bsdf.roughAlbedo()), leaves,
+                      leaves * (metallic > 0.0f ? 0.012f : 0.007f))
+              << metallic << " " << roughness << " below " << coatRoughness << " from " << wo.z;
+        }
+      }
+}
+
 // prepareFor() makes lobes faster and changes no bit, for the prepared direction or for another
 // one.
 template <typename Lobe>

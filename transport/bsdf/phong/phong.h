@@ -8,6 +8,10 @@ namespace bnvpl {
 // Phong lobes with a larger exponent n are specular: alpha = sqrt(2 / (n + 2)) is below 0.3.
 inline constexpr float kNearSpecularExponent = 20.0f;
 
+// Share of the light from a direction at this cosine that a Phong lobe reflects: 1 along the
+// normal, and less elsewhere (theory.md, eq. 2). Within 0.005.
+float phongAlbedo(float cosine, float exponent);
+
 // Modified Phong lobe (Lafortune & Willems 1994). It is reciprocal and reflects at most `colour`.
 struct PhongLobe {
   Vec3 colour;
@@ -27,7 +31,7 @@ struct PhongLobe {
     out.wi = Frame(mirrored(wo)).toWorld(samplePowerCosine(at.x, at.y, exponent));
     return out.wi.z > 0.0f;
   }
-  Vec3 albedo(Vec3) const { return colour; }  // at normal incidence
+  Vec3 albedo(Vec3 wo) const { return colour * phongAlbedo(wo.z, exponent); }
   Vec3 bound(Vec3, float maxCosine, float cosMirror) const {
     return at(cosMirror) * std::max(0.0f, maxCosine);
   }

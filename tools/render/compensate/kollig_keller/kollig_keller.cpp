@@ -1,5 +1,5 @@
 // Bias compensation of Kollig & Keller (2006): what the bound on 1/d^2 takes from VPLs depends on
-// the distance alone, and rays that go on from vertex to vertex bring all of it back.
+// the distance alone, and rays that go on from vertex to vertex add all of it back.
 #include <array>
 
 #include "tools/render/compensate/compensate.h"

@@ -49,7 +49,7 @@ size_t Blocks::operator()(const TileReceivers& tile, const VertexLights& lights,
       const uint32_t block = p / tile.width / side * across + p % tile.width / side;
       if (tile.bsdf[first + p]) members[block].push_back(first + p);
     }
-    const uint64_t sample = tile.firstSample + first / tile.pixels;
+    const uint64_t sample = tile.sampleIndex(first);
     for (uint32_t b = 0; b < blocks; ++b) {
       if (members[b].empty()) continue;
       sent += light(members[b], tile, lights, random64(tile.key, sample << 32 | b, kDimLocalLights),

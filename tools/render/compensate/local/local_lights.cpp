@@ -113,7 +113,8 @@ void LocalLights::findRadiance(const SurfacePoint& hit, Rng& rng, Light& light,
     }
     const unsigned lightRays = first ? kFirstLightRays : kLaterLightRays;
     LearnedStrata strata;
-    if (vertexLights_.spatial) strata = vertexLights_.spatial->at(point.position, point.ng);
+    if (vertexLights_.spatialLights)
+      strata = vertexLights_.spatialLights->at(point.position, point.ng);
     const LightGroupSink sink = sinkTo(groups).times(throughput);
     const LightNumbers numbers =
         strata.all && lightRays > 1 ? LightNumbers::sequence(rng) : LightNumbers(rng);

@@ -24,7 +24,7 @@ PixelSurface surfaceOf(const PixelSums& p) {
   if (!(hits > 0.0)) return {};
   const double* n = &p.sum[PixelSums::kNormal];
   const Vec3 normal(float(n[0] / hits), float(n[1] / hits), float(n[2] / hits));
-  return {ratio(p, PixelSums::kGathered, PixelSums::kAlbedo),
+  return {ratio(p, PixelSums::kToFilter, PixelSums::kAlbedo),
           length(normal) > 0.0f ? normalize(normal) : Vec3{},
           static_cast<float>(p.sum[PixelSums::kDepth] / hits)};
 }
@@ -56,7 +56,7 @@ void applyFilter(const GatherFilter& filter, uint32_t width, const PixelBox& box
     for (size_t c = 0; c < 3; ++c) {
       const double albedo = p.sum[PixelSums::kAlbedo + c];
       const double after = albedo > 0.0 ? double{filtered.light[int(c)]} * albedo : 0.0;
-      double& before = p.sum[PixelSums::kGathered + c];
+      double& before = p.sum[PixelSums::kToFilter + c];
       p.sum[PixelSums::kIndirect + c] += after - before;
       before = after;
     }

@@ -48,14 +48,14 @@ std::vector<double> tileDeviations(const Tiles& tiles, std::span<const double> v
 
 }  // namespace
 
-std::vector<double> relativeVariances(const FilmSums& film, Only only, uint32_t width) {
+std::vector<double> relativeVariances(const FilmSums& film, ShownLight shown, uint32_t width) {
   const size_t count = film.sums.size();
-  const auto shown = [&](size_t i, size_t c) {
-    return shownRadiance(film.sums[i], only, c) * film.perSample;
+  const auto radiance = [&](size_t i, size_t c) {
+    return shownRadiance(film.sums[i], shown, c) * film.perSample;
   };
   std::vector<float> light(count);
   parallelFor(count, 1024, [&](size_t i) {
-    light[i] = static_cast<float>((shown(i, 0) + shown(i, 1) + shown(i, 2)) / 3.0);
+    light[i] = static_cast<float>((radiance(i, 0) + radiance(i, 1) + radiance(i, 2)) / 3.0);
   });
   const double mean = winsorizedMean(std::move(light));
   const double epsilon = kEpsilon * mean * mean;
@@ -65,7 +65,7 @@ std::vector<double> relativeVariances(const FilmSums& film, Only only, uint32_t 
     std::array<double, 3> sum{};
     size_t near = 0;
     forNeighbours(i, width, count, [&](size_t n) {
-      for (size_t c = 0; c < 3; ++c) sum[c] += shown(n, c);
+      for (size_t c = 0; c < 3; ++c) sum[c] += radiance(n, c);
       ++near;
     });
     for (size_t c = 0; c < 3; ++c) {

@@ -14,7 +14,7 @@ namespace bnvpl {
 // relMSE of vpl-inspect compare, but with the mean brightness of 3 x 3 pixels: a pixel's own is too
 // low where its samples missed the light, and too high where one of them is a firefly. At edges of
 // shadows the result is less than relMSE.
-std::vector<double> relativeVariances(const FilmSums& film, Only only, uint32_t width);
+std::vector<double> relativeVariances(const FilmSums& film, ShownLight shown, uint32_t width);
 
 // Square root of the mean of relativeVariances().
 double relativeError(std::span<const double> variances);

@@ -10,8 +10,9 @@ namespace bnvpl {
 
 namespace {
 
-constexpr size_t kMinTiles = 64, kTilesForEach = 64;  // a trial has one tile of this many
-constexpr size_t kWorthATrial = 512;                  // tiles of a film
+constexpr size_t kTilesForEach = 64;  // tiles of the film for each tile of a trial
+constexpr size_t kMinTiles = 64;      // tiles of a trial at least
+constexpr size_t kWorthATrial = 512;  // tiles of a film
 // A tile that learns the lights does so for itself and those around it, which share it later.
 constexpr double kLearnTogether = 9.0;
 

@@ -41,11 +41,11 @@ class Passes {
       state_.at.passSpp = budget_.passSpp ? budget_.passSpp : trialPassSpp();
     if (progress) progress(samplesSoFar() + state_.at.splats.photons);
     PreviewPace pace(std::min(nowS() + 1.0, startS_ + kFirstPreview * budget_.timeS));
-    for (bool under = resumed; under || !ended(); under = false) {
-      if (!under) chooseSlots();
+    for (bool midPass = resumed; midPass || !ended(); midPass = false) {
+      if (!midPass) chooseSpp();
       const double earlierS = state_.at.passesS;
       makePass(progress, controls, preview, pace);
-      if (!under) lastPassS_ = state_.at.passesS - earlierS;
+      if (!midPass) lastPassS_ = state_.at.passesS - earlierS;
       closePass();
       if (progress)
         progress.tell({leftS(), state_.at.pass > 1 ? std::optional(error_) : std::nullopt});
@@ -56,7 +56,7 @@ class Passes {
   Image image(FilmStats& stats, PassesDone& done) const {
     Image image = blankImage(scene_.film);
     const Shown shown = this->shown();
-    addRadiance(shown.sums, options_.only, image);
+    addRadiance(shown.sums, options_.shown, image);
     addGroups(state_.groups, options_.groups, shown.sums.perSample, shown.groups, image);
     for (const Layer* layer : options_.layers) addLayer(*layer, shown.sums, image);
     addFirstHits(tiles_, options_.layers, options_.firstHits, {0, 0, image.width, image.height},
@@ -72,7 +72,7 @@ class Passes {
   Image imageSoFar() const {
     const double startS = nowS();
     Image image = blankImage(scene_.film);
-    addRadiance(shown().sums, options_.only, image);
+    addRadiance(shown().sums, options_.shown, image);
     finishS_ = nowS() - startS;
     return image;
   }
@@ -102,7 +102,7 @@ class Passes {
     }
     if (options_.redistributeFireflies)
       out.sums.redistributed = out.redistributed =
-          redistributeFireflies(out.sums, options_.only, film.width, &out.groups);
+          redistributeFireflies(out.sums, options_.shown, film.width, &out.groups);
     return out;
   }
   // Samples of the finished passes, and of the finished tiles of the current one.
@@ -154,7 +154,7 @@ class Passes {
     return std::isfinite(left) ? std::optional(left) : std::nullopt;
   }
 
-  void chooseSlots() {
+  void chooseSpp() {
     const uint64_t passes = state_.at.pass;
     std::fill(state_.done.begin(), state_.done.end(), 0);
     if (passes < kUniformPasses || !budget_.adaptive || integrator_.splatPhotons) {
@@ -182,7 +182,7 @@ class Passes {
       if (!showTiles || (!preview.tile && !preview.image)) return;
       const Tile tile = tiles_.at(index);
       const std::vector<Vec3> radiance =
-          meanRadiance(tiles_, tile, state_.sums, options_.only, 1.0);
+          meanRadiance(tiles_, tile, state_.sums, options_.shown, 1.0);
       if (preview.tile) preview.tile(boxOf(tile), radiance);
       if (!partial) return;
       partial->add(index, radiance);
@@ -209,7 +209,7 @@ class Passes {
         state_.at.splats,
         [&](const Splat& splat) {
           addSplat(splat, share, state_.sums, state_.counts);
-          if (!isFinite(splat.radiance) || options_.only == Only::Direct) return;
+          if (!isFinite(splat.radiance) || options_.shown == ShownLight::Direct) return;
           const Vec3 contribution = splat.radiance * share;
           state_.groups.add(splat, share);
           for (size_t c = 0; c < 3; ++c)
@@ -229,7 +229,7 @@ class Passes {
                [&](uint32_t p, const CameraSample& sample) {
                  const size_t i = tiles_.pixelIndex(tile, p);
                  if (addSample(sample.radiance, sums[p], state_.counts[i]))
-                   state_.groups.add(i, sample, options_.only, 1.0f / static_cast<float>(spp));
+                   state_.groups.add(i, sample, options_.shown, 1.0f / static_cast<float>(spp));
                });
     for (uint32_t p = 0; p < tile.pixels(); ++p) {
       const size_t i = tiles_.pixelIndex(tile, p);
@@ -239,7 +239,8 @@ class Passes {
           state_.sums[i].keepBrightest(kind, contribution * (1.0f / static_cast<float>(spp)));
       }
       for (size_t k = 0; k < sums[p].sum.size(); ++k) state_.sums[i].sum[k] += sums[p].sum[k];
-      for (size_t c = 0; c < 3; ++c) state_.values[i][c] = shownRadiance(sums[p], options_.only, c);
+      for (size_t c = 0; c < 3; ++c)
+        state_.values[i][c] = shownRadiance(sums[p], options_.shown, c);
     }
   }
 
@@ -259,13 +260,13 @@ class Passes {
         for (size_t c = 0; c < 3; ++c) {
           const double value = state_.values[i][c];
           state_.squares[i][c] += value * value;
-          const double mean = shownRadiance(state_.sums[i], options_.only, c) / passes;
+          const double mean = shownRadiance(state_.sums[i], options_.shown, c) / passes;
           const double spread = std::max(0.0, state_.squares[i][c] / passes - mean * mean);
           known_[i].variance[c] = state_.at.pass > 1 ? spread / (passes - 1.0) : 0.0;
         }
       }
     });
-    variances_ = relativeVariances(sumsSoFar(), options_.only, scene_.film.width);
+    variances_ = relativeVariances(sumsSoFar(), options_.shown, scene_.film.width);
     error_ = relativeError(variances_);
   }
 

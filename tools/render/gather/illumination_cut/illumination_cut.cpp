@@ -63,8 +63,8 @@ Gather make(const GatherInputs& in, const Values& options) {
       {double{options.real32(kErrorOption)}, static_cast<size_t>(options[kVisibilityRaysOption])}));
   Gather gather = gatherEach(
       [in, plan](const Bsdf& bsdf, const LightGroupSink&) { return gatherPairs(in, *plan, bsdf); });
-  gather.planned = {{"plan_pairs", "pairs found for the film", double(plan->pairs.size())},
-                    {"plan_rays", "shadow rays by which they were found", double(plan->rays)}};
+  gather.filmCounts = {{"plan_pairs", "pairs found for the film", double(plan->pairs.size())},
+                       {"plan_rays", "shadow rays by which they were found", double(plan->rays)}};
   return gather;
 }
 

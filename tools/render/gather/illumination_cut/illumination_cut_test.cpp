@@ -66,8 +66,8 @@ TEST(IlluminationCut, HiddenVplsNeedNoMorePairsThanSeenOnes) {
   const RenderResult result = renderVpls(
       world, lit, with(kPlainRender, {{"gather", "illumination-cut"}, {"only", "indirect"}}));
   EXPECT_EQ(result.stats.indirect, 0.0);
-  ASSERT_EQ(result.planned[0].name, "plan_pairs");
-  EXPECT_LT(result.planned[0].value, 0.25 * double(lit.size()) * 32 * 32);
+  ASSERT_EQ(result.filmCounts[0].name, "plan_pairs");
+  EXPECT_LT(result.filmCounts[0].value, 0.25 * double(lit.size()) * 32 * 32);
 }
 
 }  // namespace

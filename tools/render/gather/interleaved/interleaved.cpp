@@ -76,8 +76,8 @@ GatherFilter gatherFilter(const Values& options) {
 // that have no common factor with their number.
 size_t subsetOf(const TileReceivers& tile, size_t sample, uint32_t side) {
   const auto pixel = static_cast<uint32_t>(sample % tile.pixels);
-  const uint32_t x = (tile.x + pixel % tile.width) % side, y = (tile.y + pixel / tile.width) % side;
-  const uint64_t turn = uint64_t{tile.sequenceOffset} + tile.firstSample + sample / tile.pixels;
+  const uint32_t x = tile.pixelX(pixel) % side, y = tile.pixelY(pixel) % side;
+  const uint64_t turn = uint64_t{tile.sequenceOffset} + tile.sampleIndex(sample);
   const uint64_t subsets = uint64_t{side} * side;
   return (y * side + x + turn * (subsets / 2)) % subsets;
 }

@@ -79,7 +79,7 @@ TEST(Interleaved, RedPixelsDarkenNoOtherChannel) {
     p.sum[PixelSums::kNormal + 2] = 1.0;
     for (size_t c = 0; c < 3; ++c) {
       p.sum[PixelSums::kAlbedo + c] = i == 1 && c > 0 ? 0.0 : 0.5;
-      p.sum[PixelSums::kGathered + c] = p.sum[PixelSums::kAlbedo + c] * (i == 0   ? 1
+      p.sum[PixelSums::kToFilter + c] = p.sum[PixelSums::kAlbedo + c] * (i == 0   ? 1
                                                                          : i == 1 ? 3
                                                                                   : 2);
     }
@@ -89,10 +89,10 @@ TEST(Interleaved, RedPixelsDarkenNoOtherChannel) {
   applyFilter(
       method.gatherFilter(options), 3, {0, 0, 3, 1}, [](size_t) { return uint64_t{1}; }, film,
       counts);
-  EXPECT_NEAR(film[0].sum[PixelSums::kGathered], 0.5 * 2.0, 1e-6);
-  EXPECT_NEAR(film[0].sum[PixelSums::kGathered + 1], 0.5 * 1.5, 1e-6);
-  EXPECT_EQ(film[1].sum[PixelSums::kGathered + 1], 0.0);
-  EXPECT_NEAR(film[2].sum[PixelSums::kGathered + 2], 0.5 * 1.5, 1e-6);
+  EXPECT_NEAR(film[0].sum[PixelSums::kToFilter], 0.5 * 2.0, 1e-6);
+  EXPECT_NEAR(film[0].sum[PixelSums::kToFilter + 1], 0.5 * 1.5, 1e-6);
+  EXPECT_EQ(film[1].sum[PixelSums::kToFilter + 1], 0.0);
+  EXPECT_NEAR(film[2].sum[PixelSums::kToFilter + 2], 0.5 * 1.5, 1e-6);
 }
 
 // A filter that crossed the silhouettes of the blocks would bring the light of the wall behind.

@@ -15,9 +15,9 @@ Gather make(const GatherInputs& in, const Values& options) {
   const auto plan = std::make_shared<const SlicePlan>(makeSlicePlan(in, options));
   double clusters = 0.0;
   for (const ClusterDraws& slice : plan->draws) clusters += double(slice.clusters());
-  std::vector<PlanCount> planned = entriesOf(plan->rows, in.vpls.size());
-  planned.push_back({"slice_clusters", "clusters of a slice, on average",
-                     plan->draws.empty() ? 0.0 : clusters / double(plan->draws.size())});
+  std::vector<FilmCount> filmCounts = entriesOf(plan->rows, in.vpls.size());
+  filmCounts.push_back({"slice_clusters", "clusters of a slice, on average",
+                        plan->draws.empty() ? 0.0 : clusters / double(plan->draws.size())});
   return {.tile =
               [in, plan](const TileReceivers& tile, std::span<Gathered> out) {
                 for (size_t i = 0; i < out.size(); ++i) {
@@ -26,7 +26,7 @@ Gather make(const GatherInputs& in, const Values& options) {
                   out[i] = plan->draws[plan->sliceOf(tile.bsdf[i]->point())].gather(in, tile, i);
                 }
               },
-          .planned = std::move(planned)};
+          .filmCounts = std::move(filmCounts)};
 }
 
 }  // namespace

@@ -41,7 +41,7 @@ TEST(LightSlice, WithAColumnForEveryVplItIsAll) {
 // behind the door are such VPLs.
 TEST(LightSlice, VplsThatNoSliceSeesAreNotLost) {
   const Given one{{"slices", "1"}, {"columns", "50"}, {"spp", "16"}};
-  expectMeanOfAll("lightslice", 0.1, one, false, 16);
+  expectMeanOfAll("lightslice", 0.1, one, false, 24);
 }
 
 }  // namespace

@@ -62,7 +62,7 @@ Gather make(const GatherInputs& in, const Values& options) {
                 }
               },
           .wholePixels = true,
-          .planned = entriesOf(plan->rows, in.vpls.size())};
+          .filmCounts = entriesOf(plan->rows, in.vpls.size())};
 }
 
 }  // namespace

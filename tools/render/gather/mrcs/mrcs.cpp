@@ -110,14 +110,14 @@ Plan planOf(const GatherInputs& in, const Values& options) {
 
 Gather make(const GatherInputs& in, const Values& options) {
   const auto plan = std::make_shared<const Plan>(planOf(in, options));
-  std::vector<PlanCount> planned = entriesOf(plan->rows, in.vpls.size());
-  planned.push_back({"split_clusters", "clusters found by splitting", double(plan->splits)});
+  std::vector<FilmCount> filmCounts = entriesOf(plan->rows, in.vpls.size());
+  filmCounts.push_back({"split_clusters", "clusters found by splitting", double(plan->splits)});
   return {.tile =
               [in, plan](const TileReceivers& tile, std::span<Gathered> out) {
                 for (size_t i = 0; i < out.size(); ++i)
                   out[i] = tile.bsdf[i] ? plan->draws.gather(in, tile, i) : Gathered{};
               },
-          .planned = std::move(planned)};
+          .filmCounts = std::move(filmCounts)};
 }
 
 }  // namespace

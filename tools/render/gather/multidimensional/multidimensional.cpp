@@ -199,8 +199,9 @@ Gather make(const GatherInputs& in, const Values& options) {
       const PixelSamples samples(tile, pixel);
       if (samples.bsdf.empty() || in.tree.nodes.empty()) continue;
       const uint64_t sample = uint64_t{tile.sequenceOffset} + tile.firstSample;
-      out[pixel] = PixelCut(in, samples, Rng(random64(tile.key, pixel, kDimReceivers), sample))
-                       .refined(error, maxPairs);
+      out[pixel] =
+          PixelCut(in, samples, Rng(random64(tile.key, pixel, kDimRepresentatives), sample))
+              .refined(error, maxPairs);
     }
   }};
 }

@@ -130,7 +130,7 @@ TileCut chooseTileCut(const Accelerator& accel, const VplLights& vpls, const Lig
   };
   std::array<float, kSampleReceivers> light = lightAt(accel, vpls, tree, sample, tile.key);
   for (float& l : light) {
-    l += tile.otherLight;
+    l += tile.lightBesidesVpls;
     if (l > tile.medianTileLight)
       l = std::sqrt(l * tile.medianTileLight);  // see SampleAllocation::relative
   }

@@ -97,7 +97,7 @@ bool exceedsAnywhere(const LightNode& n, float allowed, const ReceiverPacket& p)
 // one of its receivers than to the sample receivers: its deviation alone would exceed the allowed
 // one.
 bool tooNear(const LightNode& n, float allowed, const ReceiverPacket& p) {
-  if (n.leaf() || surelyFar(n, allowed, p.bounds, p.brightest)) return false;
+  if (n.leaf() || surelyFaint(n, allowed, p.bounds, p.brightest)) return false;
   return withKind(n.kind,
                   [&](auto kind) { return exceedsAnywhere<decltype(kind)>(n, allowed, p); });
 }
@@ -124,9 +124,9 @@ void gatherTile(const Accelerator& accel, const VplLights& vpls, const LightTree
   std::vector<uint32_t> open;
   // Handles all samples cluster by cluster, so that rays to the same cluster are traced together.
   for (const uint32_t ofCut : cut.nodes) {
-    const bool far = surelyFar(tree.nodes[ofCut], cut.allowedDeviation, bounds, brightest);
+    const bool faint = surelyFaint(tree.nodes[ofCut], cut.allowedDeviation, bounds, brightest);
     for (ReceiverPacket& packet : packets) {
-      if (far) {
+      if (faint) {
         take(ofCut, packet);
         continue;
       }

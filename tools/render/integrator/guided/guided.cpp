@@ -4,6 +4,7 @@
 
 #include "core/random_streams.h"
 #include "tools/render/integrator/guided/guided_rays.h"
+#include "tools/render/integrator/make_tile_parts.h"
 #include "tools/render/integrator/path_tracer.h"
 #include "tools/render/integrator/tile_options.h"
 #include "tools/render/stage_options.h"
@@ -67,37 +68,36 @@ struct Parts {
 Integrator make(const IntegratorInputs& in, const Values& options) {
   constexpr unsigned kLightRays = 8;        // sets the number of rays that tiles learn from
   constexpr uint64_t kProbeRays = 1 << 18;  // limit for a cost estimate
-  const bool indirect = in.only != Only::Direct;
+  const bool indirect = in.shown != ShownLight::Direct;
   const auto vpls = std::max<uint64_t>(1, in.lit.size());
   const auto parts = std::make_shared<Parts>();
   parts->spatialLights = std::make_unique<const SpatialLightSampler>(
       in.accel, in.lights, in.lit.position, in.lit.normal, in.lit.radius,
       streamKey(in.seed, RandomStream::SpatialLightSampler), in.progress);
-  TileParts tile;
-  tile.spatialLights = parts->spatialLights.get();
+  TileParts tileParts;
+  tileParts.spatialLights = parts->spatialLights.get();
   if (options.has(kPathsOption)) {
-    tile.raysEach = static_cast<unsigned>(options[kPathsOption]);
+    tileParts.raysEach = static_cast<unsigned>(options[kPathsOption]);
     const uint64_t each = raysEach(in, options),
                    few = unitsToTry(in.trial, each, std::max<uint64_t>(64, kProbeRays / vpls));
     const CostTrial::Part part(in.trial, static_cast<double>(std::max<uint64_t>(1, each)) /
                                              static_cast<double>(std::max<uint64_t>(1, few)));
-    tile.rays = std::make_unique<const GuidedRays>(
+    tileParts.rays = std::make_unique<const GuidedRays>(
         in.accel, in.lights, Guide(in.lit, in.accel, in.lights, in.seed, few, in.progress),
-        *parts->spatialLights, options.real32(kGuideShareOption), tile.raysEach,
-        maxBouncesOf(options), in.only);
+        *parts->spatialLights, options.real32(kGuideShareOption), maxBouncesOf(options), in.shown);
   }
-  if (indirect) tile.reuse = static_cast<unsigned>(options[kReuseOption]);
-  const FilmRays filmRays(in.accel, in.lights, in.filter, tile.spatialLights, in.seed);
+  if (indirect) tileParts.reuse = static_cast<unsigned>(options[kReuseOption]);
+  const FilmRays filmRays(in.accel, in.lights, in.filter, tileParts.spatialLights, in.seed);
   const bool controlled = indirect && options.meet(valueIs(kControlOption, "vpls"));
   const FilmPoints filmPoints =
-      controlled || in.only != Only::Indirect ? filmRays.all() : FilmPoints{};
-  if (controlled) tile.control = makeControlVariate(in, filmPoints);
-  addDirectLight(in, options, filmRays, filmPoints, kLightRays, tile);
-  tile.caustics = makeCaustics(in, tile, causticPhotons(in, options), preparedSpp(options),
-                               maxBouncesOf(options));
-  const CausticStats caustics = tile.caustics ? tile.caustics->stats() : CausticStats{};
+      controlled || in.shown != ShownLight::Indirect ? filmRays.all() : FilmPoints{};
+  if (controlled) tileParts.control = makeControlVariate(in, filmPoints);
+  addDirectLight(in, options, filmRays, filmPoints, kLightRays, tileParts);
+  tileParts.caustics = makeCaustics(in, tileParts, causticPhotons(in, options),
+                                    preparedSpp(options), maxBouncesOf(options));
+  const CausticStats caustics = tileParts.caustics ? tileParts.caustics->stats() : CausticStats{};
   parts->integrator =
-      std::make_unique<const TileIntegrator>(in.accel, in.lights, std::move(tile), in.only);
+      std::make_unique<const TileIntegrator>(in.accel, in.lights, std::move(tileParts), in.shown);
   parts->allocation = allocationOf(in, options, *parts->integrator);
   return {.renderTile =
               [parts](const TileSamples& samples) {

@@ -34,7 +34,7 @@ void GuidedRays::send(const RayOrigin& from, unsigned count, uint32_t first, uin
                              : 0.0f;
   std::vector<Vec3> groups(3 * size_t{out.groups});
   sendRays(
-      accel_, from, misRays_, count, first, key, out, [](std::span<const SurfacePoint>) {},
+      accel_, from, count, first, key, out, [](std::span<const SurfacePoint>) {},
       [&](size_t, const FirstSegment& segment) {
         follow(segment, expected, from.reuse, groups, out);
       });
@@ -47,14 +47,14 @@ void GuidedRays::follow(const FirstSegment& start, float expected, bool reuse,
                         std::span<Vec3> groups, RayContributions& out) const {
   Rng rng = start.rng;
   SpecularLightSampling sampling{nullptr, &spatialLights_};
-  if (only_ != Only::Indirect)
+  if (shown_ != ShownLight::Indirect)
     sampling.firstSegmentEmission = out.directGroups().times(start.throughput);
-  if (only_ != Only::Direct)
+  if (shown_ != ShownLight::Direct)
     sampling.lightOverSpecular = out.indirectGroups().times(start.throughput);
   SpecularPath vertex = followSpecularPath(accel_, lights_, *start.hit, start.direction,
                                            start.arrival, rng, sampling);
-  if (only_ != Only::Indirect) out.direct += start.throughput * vertex.firstSegmentEmission;
-  if (only_ == Only::Direct) return;
+  if (shown_ != ShownLight::Indirect) out.direct += start.throughput * vertex.firstSegmentEmission;
+  if (shown_ == ShownLight::Direct) return;
   const auto add = [&](Vec3 light) { out.indirect += light, out.compensated += light; };
   add(start.throughput * vertex.lightOverSpecular);
   if (maxBounces_ == 0 || !vertex.rough) return;

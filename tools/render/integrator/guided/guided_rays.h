@@ -12,20 +12,18 @@ namespace bnvpl {
 class GuidedRays : public IndirectRays {
  public:
   // `spatialLights`: distribution for light sampling at vertices. `guideShare`: share of directions
-  // that are sampled from the guide in regions that it knows; below 1. `misRays`: number of rays
-  // from a shading point that MIS weights assume. `maxBounces`: limit of bounces after the shading
-  // point.
+  // that are sampled from the guide in regions that it knows; below 1. `maxBounces`: limit of
+  // bounces after the shading point.
   GuidedRays(const Accelerator& accel, const LightSet& lights, Guide guide,
-             const SpatialLightSampler& spatialLights, float guideShare, unsigned misRays,
-             unsigned maxBounces, Only only)
+             const SpatialLightSampler& spatialLights, float guideShare, unsigned maxBounces,
+             ShownLight shown)
       : accel_(accel),
         lights_(lights),
         guide_(std::move(guide)),
         spatialLights_(spatialLights),
         guideShare_(guideShare),
-        misRays_(misRays),
         maxBounces_(maxBounces),
-        only_(only) {}
+        shown_(shown) {}
 
   Directions directionsFrom(const Bsdf& bsdf) const override {
     return directionsIn(guide_.regionAt(bsdf.point()), bsdf);
@@ -51,8 +49,8 @@ class GuidedRays : public IndirectRays {
   Guide guide_;
   const SpatialLightSampler& spatialLights_;
   float guideShare_;
-  unsigned misRays_, maxBounces_;
-  Only only_;
+  unsigned maxBounces_;
+  ShownLight shown_;
 };
 
 }  // namespace bnvpl

@@ -13,9 +13,9 @@ constexpr auto kOptions = optionTable(kMaxBouncesOption);
 
 Integrator make(const IntegratorInputs& in, const Values& options) {
   const unsigned maxBounces = maxBouncesOf(options);
-  const bool photons = in.only != Only::Direct;
+  const bool photons = in.shown != ShownLight::Direct;
   const auto paths =
-      std::make_shared<const PathTracer>(in.accel, in.lights, maxBounces, in.only, !photons);
+      std::make_shared<const PathTracer>(in.accel, in.lights, maxBounces, in.shown, !photons);
   Integrator result{[paths](const TileSamples& tile) { paths->render(tile); }};
   if (photons) {
     const auto tracer =

@@ -19,7 +19,7 @@ struct Parts {
   PathTracer tracer;
   Parts(const IntegratorInputs& in, const Values& options)
       : lights(options[kLightSamplingOption] ? in.lights : in.lights.onlyUnhittable()),
-        tracer(in.accel, lights, maxBouncesOf(options), in.only) {}
+        tracer(in.accel, lights, maxBouncesOf(options), in.shown) {}
 };
 
 Integrator make(const IntegratorInputs& in, const Values& options) {

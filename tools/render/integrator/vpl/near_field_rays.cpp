@@ -33,9 +33,9 @@ void NearFieldRays::send(const RayOrigin& from, unsigned count, uint32_t first, 
   std::array<ReachGrid::Lookup, Accelerator::kBatch> coverLookup;
   std::vector<Vec3> groups(2 * size_t{out.groups});
   sendRays(
-      accel_, from, misRays_, count, first, key, out,
+      accel_, from, count, first, key, out,
       [&](std::span<const SurfacePoint> hits) {
-        if (compensation_.byRays() && only_ != Only::Direct)
+        if (compensation_.byRays() && shown_ != ShownLight::Direct)
           compensation_.lookUp(hits, coverLookup);
       },
       [&](size_t k, const FirstSegment& segment) {
@@ -129,9 +129,9 @@ void NearFieldRays::follow(const FirstSegment& start, const ReachGrid::Lookup& c
   for (bool goesOn = true; goesOn; ++path.segments) {
     const SpecularPath& segment = path.segment;
     const bool first = path.isFirst();
-    if (first && only_ != Only::Indirect)
+    if (first && shown_ != ShownLight::Indirect)
       out.direct += path.throughput * segment.firstSegmentEmission;
-    if (only_ == Only::Direct) break;
+    if (shown_ == ShownLight::Direct) break;
     path.light = path.throughput *
                  (segment.lightOverSpecular + (first ? Vec3{} : segment.firstSegmentEmission));
     Uncovered uncovered;
@@ -162,15 +162,16 @@ void NearFieldRays::follow(const FirstSegment& start, const ReachGrid::Lookup& c
 // path takes specular lobes more often.
 void NearFieldRays::begin(Path& path, const ReachGrid::Lookup& coverLookup) const {
   const SurfacePoint& hit = *path.start.hit;
-  if (hit.triangle != kNone && only_ != Only::Direct &&
+  if (hit.triangle != kNone && shown_ != ShownLight::Direct &&
       mayBeSpecular(accel_.scene().materials[hit.material])) {
     path.atFirstHit = uncoveredAt(hit, true, &coverLookup, path.rng);
     path.roughImportance = std::max(kMinImportance, path.atFirstHit->share);
   }
   SpecularLightSampling sampling{nullptr, spatialLights_};
-  if (only_ != Only::Indirect)
+  if (shown_ != ShownLight::Indirect)
     sampling.firstSegmentEmission = path.out.directGroups().times(path.throughput);
-  if (only_ != Only::Direct) sampling.lightOverSpecular = path.lightSink().times(path.throughput);
+  if (shown_ != ShownLight::Direct)
+    sampling.lightOverSpecular = path.lightSink().times(path.throughput);
   path.segment = followSpecularPath(accel_, lights_, hit, path.start.direction, path.start.arrival,
                                     path.rng, sampling, path.roughImportance);
 }

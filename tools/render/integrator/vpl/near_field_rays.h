@@ -15,19 +15,17 @@ namespace bnvpl {
 
 class NearFieldRays : public IndirectRays {
  public:
-  // `point`: gathers VPLs at the vertices of rays. `misRays`: the number of rays from a shading
-  // point that MIS with shadow rays and photons assumes; other numbers remain unbiased.
-  // `spatialLights`: distribution for light sampling at vertices; null: sampling by power.
+  // `point`: gathers VPLs at the vertices of rays. `spatialLights`: distribution for light sampling
+  // at vertices; null: sampling by power.
   NearFieldRays(const Accelerator& accel, const LightSet& lights, PointGatherFn point,
-                Compensation compensation, unsigned misRays,
-                const SpatialLightSampler* spatialLights, Only only)
+                Compensation compensation, const SpatialLightSampler* spatialLights,
+                ShownLight shown)
       : accel_(accel),
         lights_(lights),
         gatherAt_(std::move(point)),
         compensation_(std::move(compensation)),
-        misRays_(misRays),
         spatialLights_(spatialLights),
-        only_(only) {}
+        shown_(shown) {}
 
   void send(const RayOrigin& from, unsigned count, uint32_t first, uint64_t key,
             RayContributions& out) const override;
@@ -51,9 +49,8 @@ class NearFieldRays : public IndirectRays {
   const LightSet& lights_;
   PointGatherFn gatherAt_;
   Compensation compensation_;
-  unsigned misRays_;
   const SpatialLightSampler* spatialLights_;
-  Only only_;
+  ShownLight shown_;
 };
 
 }  // namespace bnvpl

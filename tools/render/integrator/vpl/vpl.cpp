@@ -5,6 +5,7 @@
 
 #include "core/random_streams.h"
 #include "tools/render/gather/point_gather.h"
+#include "tools/render/integrator/make_tile_parts.h"
 #include "tools/render/integrator/tile_options.h"
 #include "tools/render/integrator/vpl/near_field_rays.h"
 #include "tools/render/integrator/vpl_kind.h"
@@ -80,10 +81,9 @@ TileGatherFn countingSampledPairs(TileGatherFn gather, size_t counter) {
 Gather makeGather(const IntegratorInputs& in, const Values& options, const FilmRays& filmRays,
                   Parts& parts) {
   parts.tree = buildLightTree(parts.vpls, in.seed);
-  Gather gather =
-      gatherOf(options)->make({in.accel, in.lights, in.lit, parts.vpls, parts.tree, in.seed,
-                               [filmRays] { return filmRays.all(); }, in.progress},
-                              options);
+  Gather gather = gatherOf(options)->make({in.accel, parts.vpls, parts.tree, in.seed,
+                                           [filmRays] { return filmRays.all(); }, in.progress},
+                                          options);
   if (!isFromCentre(parts.vpls.kind))
     gather.tile = countingSampledPairs(std::move(gather.tile), gatherOf(options)->counters.size());
   if (!gather.point) {
@@ -112,59 +112,73 @@ void addTileCompensation(const IntegratorInputs& in, const Values& options,
 }
 
 uint64_t causticPhotons(const IntegratorInputs& in, const Values& options) {
-  return in.only == Only::Direct
+  return in.shown == ShownLight::Direct
              ? 0
              : std::min(kMaxCausticPhotons, in.pixels() * options[kCausticPhotonsOption]);
 }
 
+std::unique_ptr<const SpatialLightSampler> makeSpatialLights(const IntegratorInputs& in) {
+  return std::make_unique<const SpatialLightSampler>(
+      in.accel, in.lights, in.lit.position, in.lit.normal, in.lit.radius,
+      streamKey(in.seed, RandomStream::SpatialLightSampler), in.progress);
+}
+
+// Returns null if no rays are sent. `tileParts` has their number.
+std::unique_ptr<const NearFieldRays> makeNearFieldRays(const IntegratorInputs& in,
+                                                       PointGatherFn point,
+                                                       Compensation compensation,
+                                                       const TileParts& tileParts) {
+  if (tileParts.raysEach == 0) return {};
+  return std::make_unique<const NearFieldRays>(in.accel, in.lights, std::move(point),
+                                               std::move(compensation), tileParts.spatialLights,
+                                               in.shown);
+}
+
 Integrator make(const IntegratorInputs& in, const Values& options) {
-  // Direct light needs no VPLs, so their clamp and kind are arbitrary.
-  const bool indirect = in.only != Only::Direct;
-  const float clamp = indirect ? options.real32(kClampOption) : 1.0f;
+  // Each part borrows from those before it.
   const auto parts = std::make_shared<Parts>();
+  // Direct light needs no VPLs, so their clamp and kind are arbitrary.
+  const bool indirect = in.shown != ShownLight::Direct;
+  const float clamp = indirect ? options.real32(kClampOption) : 1.0f;
   const CompensateMethod* compensate = compensationOf(options);
-  const VplKind light = indirect ? vplKindOf(options) : VplKind{};
-  parts->vpls = makeVplLights(in.lit, in.accel, clamp, light, in.litGroups,
+  const VplKind kind = indirect ? vplKindOf(options) : VplKind{};
+  parts->vpls = makeVplLights(in.lit, in.accel, clamp, kind, in.litGroups,
                               compensate && compensate->oneSize ? commonRadius(in.lit) : 0.0f);
   Compensation compensation;
   if (compensate)
-    compensation = compensate->make({in.lit, in.accel, clamp, light, in.litGroups}, options);
-  TileParts tile;
+    compensation = compensate->make({in.lit, in.accel, clamp, kind, in.litGroups}, options);
+  TileParts tileParts;
   // With --only direct, direct samples trace BSDF rays of their own.
   if (options.has(kNearFieldRaysOption) &&
       (compensation.byRays() || hasSpecularLobes(in.accel.scene())))
-    tile.raysEach = static_cast<unsigned>(options[kNearFieldRaysOption]);
-  if (indirect && (tile.raysEach > 0 || compensation.tile)) {
-    parts->spatialLights = std::make_unique<const SpatialLightSampler>(
-        in.accel, in.lights, in.lit.position, in.lit.normal, in.lit.radius,
-        streamKey(in.seed, RandomStream::SpatialLightSampler), in.progress);
-  }
-  tile.spatialLights = parts->spatialLights.get();
-  const FilmRays filmRays(in.accel, in.lights, in.filter, tile.spatialLights, in.seed);
+    tileParts.raysEach = static_cast<unsigned>(options[kNearFieldRaysOption]);
+  if (indirect && (tileParts.raysEach > 0 || compensation.tile))
+    parts->spatialLights = makeSpatialLights(in);
+  tileParts.spatialLights = parts->spatialLights.get();
+  const FilmRays filmRays(in.accel, in.lights, in.filter, tileParts.spatialLights, in.seed);
   Gather gather = indirect ? makeGather(in, options, filmRays, *parts) : Gather{};
-  tile.gather = std::move(gather.tile);
-  tile.gathersForFilter = static_cast<bool>(gatherFilterOf(options));
-  tile.gathersPixelSums = gathersPixelSums(options);
-  if (indirect) addTileCompensation(in, options, compensation, gather.point, tile);
-  const bool learned = in.only != Only::Indirect && options.meet(valueIs(kDirectOption, "learned"));
+  tileParts.gather = std::move(gather.tile);
+  tileParts.gathersForFilter = static_cast<bool>(gatherFilterOf(options));
+  tileParts.gathersPixelSums = gathersPixelSums(options);
+  if (indirect) addTileCompensation(in, options, compensation, gather.point, tileParts);
+  const bool learned =
+      in.shown != ShownLight::Indirect && options.meet(valueIs(kDirectOption, "learned"));
   const bool controlled = indirect && options.meet(valueIs(kControlOption, "vpls"));
   const FilmPoints filmPoints = controlled || learned ? filmRays.all() : FilmPoints{};
-  if (controlled) tile.control = makeControlVariate(in, filmPoints);
+  if (controlled) tileParts.control = makeControlVariate(in, filmPoints);
   addDirectLight(in, options, filmRays, filmPoints,
-                 learned ? static_cast<unsigned>(options[kLightRaysOption]) : 0, tile);
-  if (tile.raysEach > 0) {
-    tile.rays = std::make_unique<const NearFieldRays>(in.accel, in.lights, std::move(gather.point),
-                                                      std::move(compensation), tile.raysEach,
-                                                      tile.spatialLights, in.only);
-  }
-  if (indirect) tile.reuse = static_cast<unsigned>(options[kReuseOption]);
-  tile.caustics = makeCaustics(in, tile, causticPhotons(in, options), preparedSpp(options),
-                               /*bounces=*/0);  // VPLs carry the light of further bounces
-  const CausticStats caustics = tile.caustics ? tile.caustics->stats() : CausticStats{};
+                 learned ? static_cast<unsigned>(options[kLightRaysOption]) : 0, tileParts);
+  tileParts.rays =
+      makeNearFieldRays(in, std::move(gather.point), std::move(compensation), tileParts);
+  if (indirect) tileParts.reuse = static_cast<unsigned>(options[kReuseOption]);
+  tileParts.caustics =
+      makeCaustics(in, tileParts, causticPhotons(in, options), preparedSpp(options),
+                   /*bounces=*/0);  // VPLs carry the light of further bounces
+  const CausticStats caustics = tileParts.caustics ? tileParts.caustics->stats() : CausticStats{};
   std::vector<std::string_view> idle;
-  if (indirect && tile.raysEach == 0) idle = {kNearFieldRaysOption.name, kReuseKey.name};
+  if (indirect && tileParts.raysEach == 0) idle = {kNearFieldRaysOption.name, kReuseKey.name};
   parts->integrator =
-      std::make_unique<const TileIntegrator>(in.accel, in.lights, std::move(tile), in.only);
+      std::make_unique<const TileIntegrator>(in.accel, in.lights, std::move(tileParts), in.shown);
   parts->allocation = allocationOf(in, options, *parts->integrator);
   return {.renderTile =
               [parts](const TileSamples& samples) {
@@ -173,7 +187,7 @@ Integrator make(const IntegratorInputs& in, const Values& options) {
           .wholePixels = gather.wholePixels || gathersPixelSums(options),
           .vpls = parts->vpls.vplCount,
           .emissionPoints = parts->vpls.size(),
-          .planned = std::move(gather.planned),
+          .filmCounts = std::move(gather.filmCounts),
           .caustics = caustics,
           .idle = std::move(idle)};
 }

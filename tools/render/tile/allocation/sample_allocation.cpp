@@ -13,9 +13,9 @@ namespace bnvpl {
 
 namespace {
 
-// Number of tiles of the pilot, and of their samples per pixel.
+// Tiles of the pilot, and its samples per pixel.
 constexpr size_t kPilotTiles = 48;
-constexpr uint32_t kPilotSlots = 4;
+constexpr uint32_t kPilotSpp = 4;
 // Floor of a tile's light, over the film's median.
 constexpr double kFloor = 0.05;
 
@@ -25,15 +25,15 @@ struct PilotTile {
 };
 
 PilotTile samplePilot(const Scene& scene, const PixelFilter& filter, const Tiles& tiles,
-                      size_t index, uint64_t key, uint64_t spp, Only only,
+                      size_t index, uint64_t key, uint64_t spp, ShownLight shown,
                       const std::function<double(const TileSamples&)>& render) {
   const Tile tile = tiles.at(index);
   // The pilot's samples lie in negative lobes of the filter as often as the image's, but have no
   // weights: a fixed number of an image's samples has negative ones, which cancel.
-  const auto all = static_cast<uint32_t>(std::clamp<uint64_t>(spp, kPilotSlots, 64));
-  const SampleRange range{0, kPilotSlots, all, kPilotSlots};
+  const auto all = static_cast<uint32_t>(std::clamp<uint64_t>(spp, kPilotSpp, 64));
+  const SampleRange range{0, kPilotSpp, all, kPilotSpp};
   std::vector<CameraSample> samples;
-  for (uint32_t s = 0; s < kPilotSlots; ++s) {
+  for (uint32_t s = 0; s < kPilotSpp; ++s) {
     for (uint32_t p = 0; p < tile.pixels(); ++p) {
       samples.push_back(makeSample(scene, filter, key, range, tile.x(p), tile.y(p), s));
       samples.back().weight = 1.0f;
@@ -48,14 +48,14 @@ PilotTile samplePilot(const Scene& scene, const PixelFilter& filter, const Tiles
   for (uint32_t p = 0; p < tile.pixels(); ++p) {
     Vec3 sum;
     double squares = 0.0;
-    for (uint32_t s = 0; s < kPilotSlots; ++s) {
+    for (uint32_t s = 0; s < kPilotSpp; ++s) {
       const CameraSample& sample = samples[size_t{s} * tile.pixels() + p];
-      const Vec3 light = finiteOrBlack(shownRadiance(sample.radiance, only));
+      const Vec3 light = finiteOrBlack(shownRadiance(sample.radiance, shown));
       sum += light;
       squares += squared(light);
     }
-    out.variance += std::max(0.0, squares - squared(sum) / kPilotSlots) / (kPilotSlots - 1.0);
-    out.light += sum * (1.0f / kPilotSlots);
+    out.variance += std::max(0.0, squares - squared(sum) / kPilotSpp) / (kPilotSpp - 1.0);
+    out.light += sum * (1.0f / kPilotSpp);
   }
   out.variance *= double{filter.squaredWeight()} / tile.pixels();
   out.light *= 1.0f / static_cast<float>(tile.pixels());
@@ -98,7 +98,7 @@ std::array<unsigned, 2> samplesByParity(std::span<const PixelMoments> pixels,
 }
 
 SampleAllocation findAllocation(const Scene& scene, const PixelFilter& filter, uint64_t seed,
-                                uint64_t spp, Only only, const ProgressFn& progress,
+                                uint64_t spp, ShownLight shown, const ProgressFn& progress,
                                 const std::function<double(const TileSamples&)>& render) {
   const Tiles tiles(scene.film);
   const size_t count = std::min(kPilotTiles, tiles.count());
@@ -110,7 +110,7 @@ SampleAllocation findAllocation(const Scene& scene, const PixelFilter& filter, u
     const size_t begin = k * tiles.count() / count, end = (k + 1) * tiles.count() / count;
     pilot[k] =
         samplePilot(scene, filter, tiles, begin + random64(key, k, kDimPilotTile) % (end - begin),
-                    key, spp, only, render);
+                    key, spp, shown, render);
     if (progress) progress(1);
   });
   SampleAllocation out;
@@ -122,8 +122,8 @@ SampleAllocation findAllocation(const Scene& scene, const PixelFilter& filter, u
   if (lights.empty()) return {};
   const auto middle = lights.begin() + static_cast<ptrdiff_t>(lights.size() / 2);
   std::ranges::nth_element(lights, middle);
-  out.medianLight = *middle;
-  out.floorLight = kFloor * kFloor * out.medianLight;
+  out.medianSquared = *middle;
+  out.floorSquared = kFloor * kFloor * out.medianSquared;
   // The mean of standard deviations, unlike that of variances, is not dominated by a tile that
   // stays noisy with any number of samples.
   double deviation = 0.0, cost = 0.0;

@@ -44,15 +44,23 @@ struct SampleAllocation {
   double marginalCost = 0.0;  // relative variance per shadow ray; 0: unknown, nothing is allocated
   // Squared light of the film: a floor that is added to a tile's, so that dark tiles do not get all
   // samples, and the median of the tiles.
-  double floorLight = 0.0, medianLight = 0.0;
+  double floorSquared = 0.0, medianSquared = 0.0;
+
+  // The same floor and median for light whose channels are added, not squared, W/(m2 sr).
+  float floorOfChannelSums() const { return channelSum(floorSquared); }
+  float medianOfChannelSums() const { return channelSum(medianSquared); }
 
   // Variance relative to the tile's squared light; where the tile is brighter than the median, to
   // the geometric mean of both, as the error of a few bright tiles must not hide that of the rest.
   double relative(double variance, Vec3 tileLight) const {
     const double tile = squared(tileLight);
-    const double all = std::sqrt(tile * std::min(tile, medianLight)) + floorLight;
+    const double all = std::sqrt(tile * std::min(tile, medianSquared)) + floorSquared;
     return all > 0.0 ? variance / all : 0.0;
   }
+
+ private:
+  // Sum of the channels of grey light whose squared channels add up to `square`.
+  static float channelSum(double square) { return static_cast<float>(std::sqrt(3.0 * square)); }
 };
 
 // K for a part whose single samples have that variance and cost.
@@ -78,9 +86,9 @@ std::array<unsigned, 2> samplesByParity(std::span<const PixelMoments> pixels,
                                         unsigned max);
 
 // Runs the pilot: a few samples of some tiles. `render` makes the samples of a tile and returns the
-// mean cost of one. `spp`: samples per pixel of the image, of which `only` is shown.
+// mean cost of one. `spp`: samples per pixel of the image.
 SampleAllocation findAllocation(const Scene& scene, const PixelFilter& filter, uint64_t seed,
-                                uint64_t spp, Only only, const ProgressFn& progress,
+                                uint64_t spp, ShownLight shown, const ProgressFn& progress,
                                 const std::function<double(const TileSamples&)>& render);
 
 }  // namespace bnvpl

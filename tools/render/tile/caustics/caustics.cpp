@@ -125,14 +125,14 @@ void Caustics::add(const Splat& splat) {
 }
 
 PhotonMis Caustics::photonMis(const SurfacePoint& point, Vec3 origin) const {
-  return sharedBy(samplesPerArea(accel_.scene(), point, origin));
+  return misAt(samplesPerArea(accel_.scene(), point, origin));
 }
 
 Vec3 Caustics::lensPoint(Rng& rng) const {
   return sampleLens(accel_.scene().camera, [&] { return rng.nextPoint(); });
 }
 
-PhotonMis Caustics::sharedBy(float samplesPerArea) const {
+PhotonMis Caustics::misAt(float samplesPerArea) const {
   return {.lights = &lights_,
           .rays = rays_.ofPixel * samplesPerArea,
           .photons = static_cast<float>(photons_),
@@ -249,7 +249,7 @@ void Caustics::connect(const SurfacePoint& vertex, Vec3 flux, const Photon& phot
   const PixelFilter& filter = chosen_ ? filter_ : kPixel;
   const auto film = connectToFilm(accel_, vertex, photon.lens, filter);
   if (!film) return;
-  PhotonMis mis = sharedBy(film->perArea);
+  PhotonMis mis = misAt(film->perArea);
   mis.rays *= rays.probability();
   const float photonWeight = 1.0f - mis.rayWeight(photon.emission.light, -photon.start.direction,
                                                   photon.guided, rays.shadowRays);

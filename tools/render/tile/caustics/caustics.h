@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/progress.h"
-#include "tools/render/film/integrator_interface.h"
+#include "tools/render/film/integrator.h"
 #include "tools/render/pixel_filter.h"
 #include "tools/render/sample.h"
 #include "tools/render/splat/splat.h"
@@ -64,7 +64,7 @@ class Caustics {
   void learnGuide(uint64_t key, const ProgressFn& progress);
   void chooseEmitters(uint64_t key, const ProgressFn& progress);
   void add(const Splat& splat);
-  PhotonMis sharedBy(float samplesPerArea) const;
+  PhotonMis misAt(float samplesPerArea) const;
   Vec3 lensPoint(Rng& rng) const;
   static constexpr uint64_t kNoEmitter = UINT64_MAX;
   // Follows one photon. Returns its emitter, or kNoEmitter if no ray can hit that.

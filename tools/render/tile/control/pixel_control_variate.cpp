@@ -90,15 +90,15 @@ struct Variate {
   }
 };
 
-// `groups`: sums over groups of `side` pixels of a row.
+// `pools`: sums over `side` pixels of a row each.
 Variate variateOf(const TileLayout& tile, uint32_t pixel, uint32_t side,
-                  std::span<const CovarianceSums> groups) {
+                  std::span<const CovarianceSums> pools) {
   const uint32_t x = pixel % tile.width, y = pixel / tile.width, height = tile.pixels / tile.width;
   Covariance around;
   for (uint32_t v = y - std::min(y, kAround); v < std::min(height, y + kAround + 1); ++v) {
     for (uint32_t u = x - std::min(x, kAround); u < std::min(tile.width, x + kAround + 1); ++u) {
-      const uint32_t group = (v * tile.width + u) / side;
-      if (group != pixel / side) around.add(groups[group].covariance());
+      const uint32_t pool = (v * tile.width + u) / side;
+      if (pool != pixel / side) around.add(pools[pool].covariance());
     }
   }
   return {static_cast<float>(around.beta()), static_cast<float>(around.maxPrediction())};
@@ -113,19 +113,19 @@ void PixelControlVariate::apply(const TileSamples& tile,
   if (!any) return;
   const size_t count = paths.size();
   std::vector<Vec3> predictions(count);
-  // A pixel with a single sample has no deviations: it forms a group with its neighbour.
+  // A pixel with a single sample has no deviations: it forms a pool with its neighbour.
   const uint32_t side = count > tile.pixels ? 1 : 2;
-  std::vector<CovarianceSums> groups((tile.pixels + side - 1) / side);
+  std::vector<CovarianceSums> pools((tile.pixels + side - 1) / side);
   for (size_t i = 0; i < count; ++i) {
     predictions[i] = predicted(paths[i]);
     const CameraSample& sample = tile.samples[i];
-    groups[i % tile.pixels / side].add(
+    pools[i % tile.pixels / side].add(
         double{mean(unweightedIndirect(sample.radiance, sample.weight))},
         double{mean(unweighted(predictions[i], sample.weight))});
   }
   std::vector<Variate> variates(tile.pixels);
   for (uint32_t p = 0; p < tile.pixels; ++p) {
-    if (pixels_.count(tile, p) > 0) variates[p] = variateOf(tile, p, side, groups);
+    if (pixels_.count(tile, p) > 0) variates[p] = variateOf(tile, p, side, pools);
   }
   for (size_t i = 0; i < count; ++i) {
     const auto pixel = static_cast<uint32_t>(i % tile.pixels);
@@ -134,8 +134,7 @@ void PixelControlVariate::apply(const TileSamples& tile,
     Vec3 sum;
     const float each = 1.0f / static_cast<float>(pixels_.count(tile, pixel));
     const LightGroupSink byGroup = tile.samples[i].groups.indirect();
-    pixels_.forEach(tile, pixel, tile.firstSample + static_cast<uint32_t>(i / tile.pixels),
-                    {.wanted = false},
+    pixels_.forEach(tile, pixel, tile.sampleIndex(i), {.wanted = false},
                     [&](const SpecularPath& path, const RadianceSample&, float weight) {
                       const Vec3 prediction = predicted(path);
                       const float factor = variate.factor(prediction, weight);

@@ -8,7 +8,7 @@
 #include "core/random.h"
 #include "core/sampling.h"
 #include "tools/render/camera_path.h"
-#include "tools/render/gather/gather.h"
+#include "tools/render/film_points.h"
 #include "tools/render/sample.h"
 #include "tools/render/tile_dimensions.h"
 
@@ -25,7 +25,7 @@ class PixelRays {
 
   // Rays for each sample of a pixel of the tile.
   unsigned count(const TileLayout& tile, uint32_t pixel) const {
-    return raysEach_[size_t{tile.y + pixel / tile.width} * width_ + tile.x + pixel % tile.width];
+    return raysEach_[size_t{tile.pixelY(pixel)} * width_ + tile.pixelX(pixel)];
   }
   // Calls fn(path, sample, weight) for each ray; path and sample include the weight, which is that
   // of the filter. The rays are independent of the sample. `groups` receives their emission.
@@ -33,7 +33,7 @@ class PixelRays {
   void forEach(const TileLayout& tile, uint32_t pixel, uint32_t sampleIndex,
                const SpecularLightSampling& specularLights, const Fn& fn,
                const SampleGroups& groups = {}) const {
-    const uint32_t x = tile.x + pixel % tile.width, y = tile.y + pixel / tile.width;
+    const uint32_t x = tile.pixelX(pixel), y = tile.pixelY(pixel);
     const unsigned rays = count(tile, pixel);
     const uint64_t key = random64(tile.key, pixel, dimension_);
     for (unsigned k = 0; k < rays; ++k) {

@@ -36,11 +36,11 @@ DirectSamples::Light& DirectSamples::Light::operator+=(const Light& other) {
 
 DirectSamples::Light DirectSamples::sample(uint32_t x, uint32_t y, const Rays& rays,
                                            const RandomNumbers& numbers, uint32_t index,
-                                           const PixelFilter::Turn& turn, RadianceSample* layers,
-                                           const SampleGroups& onCameraPath,
+                                           const PixelFilter::SampleOfSet& which,
+                                           RadianceSample* layers, const SampleGroups& onCameraPath,
                                            const LightGroupSink& lit) const {
   Rng rng = Rng::stratified(numbers.path, index);
-  const PixelFilter::Sample at = filter_.sample(rng.nextPoint(), turn);
+  const PixelFilter::Sample at = filter_.sample(rng.nextPoint(), which);
   RadianceSample seen;
   const SpecularPath path = traceCameraPath(accel_, lights_, x, y, at, rng, seen,
                                             {rays.lights.strata, spatialLights_}, onCameraPath);
@@ -117,12 +117,11 @@ DirectSamples::Pilot DirectSamples::pilot(const TileLayout& tile,
   const Rays rays{lightsOf(strata)};
   double pixels = 0.0, varianceByLight = 0.0, squareByBsdf = 0.0;
   for (uint32_t p = 0; p < tile.pixels; ++p) {
-    const uint32_t x = p % tile.width, y = p / tile.width;
-    if (parity(x, y) != 0) continue;
+    if (parity(p % tile.width, p / tile.width) != 0) continue;
+    const uint32_t x = tile.pixelX(p), y = tile.pixelY(p);
     const RandomNumbers numbers(
         random64(tile.key, uint64_t{p} << 32 | tile.firstSample, kDimDirectPilots));
-    const Light a = sample(tile.x + x, tile.y + y, rays, numbers, 0, {}),
-                b = sample(tile.x + x, tile.y + y, rays, numbers, 1, {});
+    const Light a = sample(x, y, rays, numbers, 0, {}), b = sample(x, y, rays, numbers, 1, {});
     out.variance += 0.5 * squared(a.unweightedLight() - b.unweightedLight());
     varianceByLight +=
         0.5 * squared(unweighted(a.byLight, a.weight) - unweighted(b.byLight, b.weight));
@@ -197,19 +196,19 @@ struct DirectSamples::Pixel {
 
 void DirectSamples::add(const TileSamples& tile, uint32_t pixel, const Rays& rays, unsigned count,
                         Pixel& out, PixelMoments& moments) const {
-  const uint32_t x = tile.x + pixel % tile.width, y = tile.y + pixel / tile.width;
+  const uint32_t x = tile.pixelX(pixel), y = tile.pixelY(pixel);
   const RandomNumbers numbers(
       random64(tile.key, uint64_t{pixel} << 32 | tile.firstSample, kDimDirectSamples));
   uint32_t index = out.count * static_cast<uint32_t>(out.sums.size());
-  PixelFilter::Turn turn{0, uint64_t{count} * out.sums.size(), numbers.path, tile.weighted};
+  PixelFilter::SampleOfSet which{0, uint64_t{count} * out.sums.size(), numbers.path, tile.weighted};
   for (size_t s = 0; s < out.sums.size(); ++s) {
     for (unsigned k = 0; k < count; ++k) {
       RadianceSample* layers =
           alone_ && out.count + k == 0 ? &tile.samples[s * tile.pixels + pixel].radiance : nullptr;
       const SampleGroups& onCameraPath = tile.samples[s * tile.pixels + pixel].groups;
       const LightGroupSink lit{onCameraPath.sums ? &out.lit[s * onCameraPath.count] : nullptr};
-      const Light light = sample(x, y, rays, numbers, index++, turn, layers, onCameraPath, lit);
-      ++turn.index;
+      const Light light = sample(x, y, rays, numbers, index++, which, layers, onCameraPath, lit);
+      ++which.index;
       out.sums[s] += light;
       moments.add(light.unweightedLight());
     }
@@ -278,12 +277,12 @@ void DirectSamples::store(const TileSamples& tile, uint32_t pixel, const Learned
   const unsigned cameraRays = from.count + (countsCameraPaths() ? 1 : 0);
   for (size_t s = 0; s < from.sums.size(); ++s) {
     const Light& sum = from.sums[s];
-    RadianceSample& out = tile.samples[s * tile.pixels + pixel].radiance;
-    const SampleGroups& groups = tile.samples[s * tile.pixels + pixel].groups;
+    const size_t i = s * tile.pixels + pixel;
+    RadianceSample& out = tile.samples[i].radiance;
+    const SampleGroups& groups = tile.samples[i].groups;
     out.direct = sum.onCameraPath, out.emission = sum.emission;
     if (visibleEmission_) {
-      visibleEmission_->average(out, cameraRays, tile, pixel,
-                                tile.firstSample + static_cast<uint32_t>(s),
+      visibleEmission_->average(out, cameraRays, tile, pixel, tile.sampleIndex(i),
                                 {strata, spatialLights_}, groups);
     } else {
       const float each = 1.0f / static_cast<float>(cameraRays);

@@ -48,7 +48,7 @@ class DirectSamples {
   bool countsCameraPaths() const { return count_ > 0 && !alone_; }
   // The direct light of a sample, or a sum over samples.
   struct Light {
-    Vec3 emission;  // directly visible emission
+    Vec3 emission;      // directly visible emission
     Vec3 onCameraPath;  // on the camera path: `emission`, and light at specular vertices
     // Light that the shading point scatters, by shadow rays and by BSDF rays.
     Vec3 byLight, byBsdf;
@@ -63,12 +63,13 @@ class DirectSamples {
     float bsdf = 1.0f;  // mean number, at most 1
   };
   struct RandomNumbers;
-  // One direct sample of a pixel, the index-th by `numbers`. `turn`: see PixelFilter. `layers`:
+  // One direct sample of a pixel, the index-th by `numbers`. `which`: see PixelFilter. `layers`:
   // receives depth, normal and albedo; may be null. `onCameraPath` and `lit` receive the light by
   // group that the camera path meets and that the shading point scatters.
   Light sample(uint32_t x, uint32_t y, const Rays& rays, const RandomNumbers& numbers,
-               uint32_t index, const PixelFilter::Turn& turn, RadianceSample* layers = nullptr,
-               const SampleGroups& onCameraPath = {}, const LightGroupSink& lit = {}) const;
+               uint32_t index, const PixelFilter::SampleOfSet& which,
+               RadianceSample* layers = nullptr, const SampleGroups& onCameraPath = {},
+               const LightGroupSink& lit = {}) const;
   Vec3 bsdfRay(const Bsdf& bsdf, Vec3 throughput, const Rays& rays, const LearnedLight& learned,
                Rng& rng, const LightGroupSink& lit) const;
   struct Pixel;

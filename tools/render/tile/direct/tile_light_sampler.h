@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/cost_trial.h"
-#include "tools/render/gather/gather.h"
+#include "tools/render/film/tiles.h"
 #include "transport/direct_light/strata_pilot.h"
 
 namespace bnvpl {
@@ -25,7 +25,7 @@ class TileLightSampler {
   LearnedStrata at(uint32_t x, uint32_t y) const;
 
  private:
-  struct Tile {
+  struct Lights {
     std::once_flag estimated, learned;
     StrataValues found;  // from the tile's own rays
     StrataValues light;  // from the rays of the 3 x 3 tiles around
@@ -40,9 +40,9 @@ class TileLightSampler {
   LightStrata strata_;
   size_t raysEach_;  // for each stratum
   uint64_t key_;
-  size_t tilesX_, tilesY_;
+  Tiles tiles_;
   CostTrial* cost_;
-  mutable std::vector<Tile> tiles_;
+  mutable std::vector<Lights> lightsOf_;  // for each tile
   StrataValues everywhere_;
 };
 

@@ -44,7 +44,7 @@ struct Connections {
         if (isBlack(vertex.radiance) || !isFinite(vertex.radiance)) continue;
         vertices.push_back(&vertex);
         foundBy.push_back(i);
-        byGroup.push_back(group[i].vertexGroups +
+        byGroup.push_back(group[i].verticesByLightGroup +
                           lightGroups * static_cast<size_t>(&vertex - group[i].vertices.data()));
         for (const ReusingSample& sample : group)
           all.push_back(connect(*sample.directions, vertex));
@@ -97,7 +97,7 @@ size_t reuseVertices(const Accelerator& accel, std::span<ReusingSample> group,
       const Vec3 light = c.value * weighted;
       group[k].radiance += light, group[k].squares += light * light;
       for (uint32_t g = 0; g < lightGroups; ++g)
-        group[k].groups[g] += c.value * connections.byGroup[v][g] * (1.0f / density);
+        group[k].radianceByLightGroup[g] += c.value * connections.byGroup[v][g] * (1.0f / density);
     }
   }
   return shadowRays;

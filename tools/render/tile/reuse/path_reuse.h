@@ -44,8 +44,8 @@ struct ReusingSample {
   const Directions* directions;            // distribution of its rays
   unsigned rays;                           // number of rays that it sent, n_k
   std::span<const ReusedVertex> vertices;  // those that its rays found
-  const Vec3* vertexGroups;                // their radiance by light group; null: not told apart
-  Vec3* groups;                            // result: `radiance` by light group
+  const Vec3* verticesByLightGroup;        // their radiance by light group; null: not told apart
+  Vec3* radianceByLightGroup;              // result: `radiance` by light group
   Vec3 radiance = {};  // result: the light of all vertices of the group, W/(m2 sr)
   Vec3 squares = {};   // result: sum of their squared contributions, for the variance
 };

@@ -22,10 +22,10 @@ struct Integrator {
   std::function<void(const TileSamples& tile)> renderTile;
   // Traces photons that add indirect light, one per sample of the film. May be empty.
   Splatter splatPhotons = {};
-  bool wholePixels = false;   // every call needs all samples of its pixels
-  size_t vpls = 0;            // number of VPLs with flux
-  size_t emissionPoints = 0;  // places from which these VPLs shine
-  std::vector<PlanCount> planned = {};  // counts of the gather's preparations
+  bool wholePixels = false;                // every call needs all samples of its pixels
+  size_t vpls = 0;                         // number of VPLs with flux
+  size_t emissionPoints = 0;               // places from which these VPLs shine
+  std::vector<FilmCount> filmCounts = {};  // counts of the gather's preparations
   CausticStats caustics = {};
   std::vector<std::string_view> idle = {};  // options that have no effect in this scene
 };

@@ -1,13 +1,13 @@
-#include "tools/render/integrator/tile_options.h"
+#include "tools/render/integrator/make_tile_parts.h"
 
-#include "tools/render/stage_options.h"
+#include "tools/render/integrator/tile_options.h"
 #include "tools/render/tile/control/pixel_control_variate.h"
 
 namespace bnvpl {
 
 void addDirectLight(const IntegratorInputs& in, const Values& options, const FilmRays& filmRays,
                     const FilmPoints& filmPoints, unsigned lightRays, TileParts& out) {
-  if (in.only == Only::Indirect) return;
+  if (in.shown == ShownLight::Indirect) return;
   if (lightRays > 0 &&
       in.lights.size() > 0) {  // a scene without lights may be lit by VPLs of a file
     const uint64_t raysOfTile = uint64_t{kTileSide} * kTileSide * options[kSppOption] * lightRays;
@@ -21,21 +21,21 @@ void addDirectLight(const IntegratorInputs& in, const Values& options, const Fil
   if (options[kDirectSamplesOption] == 1) return;
   out.directSamples.emplace(in.accel, in.lights, in.filter, out.visibleEmission.get(),
                             out.spatialLights, static_cast<unsigned>(options[kDirectSamplesOption]),
-                            in.only == Only::Direct);
+                            in.shown == ShownLight::Direct);
 }
 
-std::unique_ptr<const Caustics> makeCaustics(const IntegratorInputs& in, const TileParts& tile,
+std::unique_ptr<const Caustics> makeCaustics(const IntegratorInputs& in, const TileParts& tileParts,
                                              uint64_t photons, uint64_t spp, unsigned bounces) {
-  if (photons == 0 || in.only == Only::Direct || !hasSpecularLobes(in.accel.scene()) ||
+  if (photons == 0 || in.shown == ShownLight::Direct || !hasSpecularLobes(in.accel.scene()) ||
       !in.lights.hasPower()) {
     return {};
   }
   constexpr uint64_t kTrialPhotons = 1 << 18;  // limit for a cost estimate
   const uint64_t sent = unitsToTry(in.trial, photons, kTrialPhotons);
   const CostTrial::Part part(in.trial, static_cast<double>(photons) / static_cast<double>(sent));
-  CompetingRays rays{.ofPixel = static_cast<float>(tile.raysEach * spp),
-                     .spatialLights = tile.spatialLights};
-  if (tile.rays) rays.roughImportance = tile.rays->roughImportance();
+  CompetingRays rays{.ofPixel = static_cast<float>(tileParts.raysEach * spp),
+                     .spatialLights = tileParts.spatialLights};
+  if (tileParts.rays) rays.roughImportance = tileParts.rays->roughImportance();
   return std::make_unique<const Caustics>(in.accel, in.lights, in.filter, sent, rays, bounces,
                                           in.seed, in.groups, in.progress);
 }
@@ -52,7 +52,7 @@ SampleAllocation allocationOf(const IntegratorInputs& in, const Values& options,
                               const TileIntegrator& integrator) {
   if (!options.has(kAllocateKey) || !options[kAllocateKey]) return {};
   return findAllocation(
-      in.accel.scene(), in.filter, in.seed, options[kSppOption], in.only, in.progress,
+      in.accel.scene(), in.filter, in.seed, options[kSppOption], in.shown, in.progress,
       [&](const TileSamples& tile) { return integrator.render(tile, SampleAllocation{}); });
 }
 

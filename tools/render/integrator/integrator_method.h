@@ -9,7 +9,7 @@
 #include "formats/vpl/vpl_table.h"
 #include "tools/common/stage/method.h"
 #include "tools/render/compensate/compensate.h"
-#include "tools/render/film/integrator_interface.h"
+#include "tools/render/film/integrator.h"
 #include "tools/render/gather/gather.h"
 #include "tools/render/pixel_filter.h"
 #include "transport/accelerator/accelerator.h"
@@ -24,7 +24,7 @@ struct IntegratorInputs {
   const LightSet& lights;
   const VplTable& lit;  // stage Lit; empty unless the method needs VPLs
   uint64_t seed;
-  Only only;
+  ShownLight shown;
   PixelFilter filter;
   const ProgressFn& progress;  // reports preparations
   CostTrial* trial = nullptr;  // set for a cost estimate
@@ -74,7 +74,7 @@ inline bool gathersPixelSums(const Values& options) {
   return gather && gather->pixelSum;
 }
 
-// `make` returns an Integrator (film/integrator_interface.h).
+// `make` returns an Integrator (film/integrator.h).
 struct IntegratorMethod {
   std::string_view name, summary;
   std::span<const Option> options;
