@@ -18,7 +18,7 @@ namespace {
 // Measured with a million VPLs of one emission point each: 1,450 for most gathers and, with the
 // near field and what lights its hits, 2,290. buildLightTree() asks for more where there are more
 // points.
-constexpr double kBytesPerVpl = 1400;
+constexpr double kBytesPerVpl = 1450;
 
 // "--integrator light or path".
 std::string withoutVpls() {

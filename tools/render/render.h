@@ -19,8 +19,8 @@ struct RenderResult {
   std::vector<FilmCount> filmCounts = {};
   CausticStats caustics = {};
   std::vector<std::string_view> idle = {};  // options that had no effect
-  std::vector<std::string> groups = {};  // light groups that the image shows
-  std::optional<PassesDone> passes;  // set if there is a budget
+  std::vector<std::string> groups = {};     // light groups that the image shows
+  std::optional<PassesDone> passes;         // set if there is a budget
   // Mean radiance that the power of the lights makes if it falls evenly on all surfaces and half of
   // it is reflected, W/(m2 sr); 0 if unknown.
   double evenRadiance = 0.0;

@@ -117,7 +117,7 @@ extern const CompensateMethod method{
         "without a VPL",
     .options = {},
     .make = make,
-    .bytesPerVpl = 800.0};
+    .bytesPerVpl = 840.0};
 
 }  // namespace methods::compensate::near_field
 

@@ -65,7 +65,8 @@ void Caustics::learnGuide(uint64_t key, const ProgressFn& progress) {
                             (photons_ + kPhotonsPerLearningPhoton - 1) / kPhotonsPerLearningPhoton);
   const uint64_t most = std::min(photons_ / kPhotonsPerFurtherPhoton, kMaxLearningPhotons);
   LearnedEmission learned = learnEmission(lights_, count, key, estimate, progress);
-  for (; !learned.enough && count < most; key = mix64(key)) {
+  while (!learned.enough && count < most) {
+    key = mix64(key);  // a longer pilot has photons of its own
     count = std::min(4 * count, most);
     learned = learnEmission(lights_, count, key, estimate, progress);
   }
