@@ -228,7 +228,7 @@ def main() -> int:
     parser.add_argument(
         "--spp", type=int, default=256, help="of the comparisons, each of three seeds"
     )
-    parser.add_argument("--picture-spp", type=int, default=32)
+    parser.add_argument("--picture-spp", type=int, default=16, help="the default of vpl-render")
     parser.add_argument("--photons", default="4M")
     parser.add_argument(
         "--no-table", action="store_true", help="leave the pages, as without all scenes"
