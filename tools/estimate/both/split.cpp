@@ -232,7 +232,9 @@ class PointAllocation {
   double misRatio(size_t i, double photons, double points) const {
     const VplStatistics& v = vpls_[i];
     if (!(points > 0.0)) return 0.0;
-    return v.startDensity * points * v.photonVariance / (photons * v.pointVariance);
+    // Both ends divide by it as a float, which must be neither 0 nor infinite.
+    return std::clamp(v.startDensity * points * v.photonVariance / (photons * v.pointVariance),
+                      1e-30, 1e30);
   }
 
  private:
