@@ -132,8 +132,8 @@ class Bsdf {
   void needFrame() {
     if (frameCount_ == 0) std::construct_at(&frames_[frameCount_++], point_, point_.ns, 0.0f);
   }
-  // Mean of the transmittance of a coat over the light that a rough lobe reflects. The coat keeps
-  // no less of it than of the light from wo, `most`.
+  // Mean of the transmittance of a coat over the light that a rough lobe reflects: the smaller of
+  // that at wo, `most`, and that at wi.
   template <typename L>
   Vec3 meanThrough(const L& lobe, uint32_t frame, const CoatAbove& above, float most) const;
   Vec3 glossyBound(uint32_t frame, float maxCosine, float cosMirror) const;
