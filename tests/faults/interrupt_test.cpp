@@ -77,16 +77,22 @@ TEST(Interrupt, RemovesPartialFilesAndTellsWhatWasReplaced) {
   fs::remove_all(folder);
 }
 
+// A loop that defers interrupts gets `signals`, saves its work and says how to go on.
+template <typename Signals>
+void deferred(const Signals& signals, const char* howToGoOn) {
+  catchInterrupts("tool");
+  try {
+    const DeferInterrupts defer;
+    signals();
+    if (interrupted()) throw Interrupted(howToGoOn);
+  } catch (const Interrupted& reason) {
+    endInterrupted(reason);
+  }
+}
+
 TEST(Interrupt, ALoopThatDefersMaySaveAndSayHowToGoOn) {
   const auto run = [] {
-    catchInterrupts("tool");
-    try {
-      const DeferInterrupts defer;
-      std::raise(SIGINT);
-      if (interrupted()) throw Interrupted("FILE holds 3 of 8 passes; the same command continues");
-    } catch (const Interrupted& reason) {
-      endInterrupted(reason);
-    }
+    deferred([] { std::raise(SIGINT); }, "FILE holds 3 of 8 passes; the same command continues");
   };
   EXPECT_EXIT(run(), KilledBySignal(SIGINT),
               "^tool: interrupted \\(SIGINT\\); FILE holds 3 of 8 passes; the same command "
@@ -109,35 +115,23 @@ TEST(Interrupt, TheSameSignalASecondLaterDoesNotWait) {
 
 // On Ctrl-C the tool gets a SIGINT and then a SIGTERM from Make; wrappers may send more.
 TEST(Interrupt, OneRequestMayComeAsSeveralSignals) {
-  const auto run = [] {
-    catchInterrupts("tool");
-    try {
-      const DeferInterrupts defer;
-      for (const int signal : {SIGINT, SIGTERM, SIGINT, SIGHUP, SIGTERM}) std::raise(signal);
-      ::usleep(1'100'000);
-      std::raise(SIGXCPU);
-      if (interrupted()) throw Interrupted("the work is saved");
-    } catch (const Interrupted& reason) {
-      endInterrupted(reason);
-    }
+  const auto signals = [] {
+    for (const int signal : {SIGINT, SIGTERM, SIGINT, SIGHUP, SIGTERM}) std::raise(signal);
+    ::usleep(1'100'000);
+    std::raise(SIGXCPU);
   };
+  const auto run = [&] { deferred(signals, "the work is saved"); };
   EXPECT_EXIT(run(), KilledBySignal(SIGINT), "^tool: interrupted \\(SIGINT\\); the work is saved");
 }
 
 // Linux repeats it every CPU second behind the soft limit.
 TEST(Interrupt, TheLimitOfCpuTimeIsOneRequestHoweverOftenItComes) {
-  const auto run = [] {
-    catchInterrupts("tool");
-    try {
-      const DeferInterrupts defer;
-      std::raise(SIGXCPU);
-      ::usleep(1'100'000);
-      std::raise(SIGXCPU);
-      if (interrupted()) throw Interrupted("the work is saved");
-    } catch (const Interrupted& reason) {
-      endInterrupted(reason);
-    }
+  const auto signals = [] {
+    std::raise(SIGXCPU);
+    ::usleep(1'100'000);
+    std::raise(SIGXCPU);
   };
+  const auto run = [&] { deferred(signals, "the work is saved"); };
   EXPECT_EXIT(run(), KilledBySignal(SIGXCPU),
               "^tool: interrupted \\(SIGXCPU\\); the work is saved");
 }

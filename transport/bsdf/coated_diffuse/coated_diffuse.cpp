@@ -35,8 +35,8 @@ void addLobes(const CoatedDiffuseModel& model, const MaterialInputs& inputs, Vec
   for (size_t c = 0; c < 3; ++c)
     scale[c] = base[c] / (kPi * ior * ior * (1.0f - base[c] * trapped));
   out.add(weight, GgxReflection{ggx, {FacetFresnel::Kind::Dielectric, Vec3(ior), {}}});
-  CoatedBase lower{scale, coat, alpha, in};
-  if (coat.thickness > 0.0f) lower.meanThrough = meanThrough(lower, in);
+  CoatedBase lower{scale, coat, alpha};
+  lower.meanThrough = meanThrough(lower, in);
   out.add(weight, lower);
 }
 
