@@ -52,6 +52,58 @@ uint32_t Bsdf::frame(Vec3 shadingNormal, float turns) {
   return frameCount_++;
 }
 
+// Cosine-weighted mean over wi of the smaller transmittance of the coat, `most` at wo.
+float Bsdf::meanThrough(const CoatAbove& above, float most) {
+  constexpr int kSteps = 8;
+  float sum = 0.0f;
+  for (int i = 0; i < kSteps; ++i)
+    sum += std::min(most, above.through(std::sqrt((float(i) + 0.5f) / kSteps)));
+  return sum / kSteps;
+}
+
+template <typename L>
+Vec3 Bsdf::meanThrough(const L& lobe, const Summand& s) const {
+  const LobeFrame& local = frames_[s.frame];
+  Vec3 reflected, kept;
+  for (uint32_t i = 0; i < kGoldenPoints; ++i) {
+    Point2 at = goldenPoint(i);
+    if constexpr (std::is_same_v<L, LayeredBase>) {
+      if (!lobe.transmitted) at = goldenDiskSample(i);  // it samples the cosine
+    }
+    LobeSample drawn;
+    if (!lobe.sample(local.wo, 0.5f, at, drawn)) continue;
+    const float pdf = lobe.pdf(local.wo, drawn.wi);
+    if (!(pdf > 0.0f)) continue;
+    const Vec3 weight =
+        lobe.value(local.wo, drawn.wi, TransportMode::Radiance) * (std::fabs(drawn.wi.z) / pdf);
+    const float cosine = std::fabs(dot(frames_[s.above.frame].z, local.toWorld(drawn.wi)));
+    reflected += weight;
+    kept += weight * std::min(s.coatOut, s.above.through(cosine));
+  }
+  for (size_t c = 0; c < 3; ++c) kept[c] = reflected[c] > 0.0f ? kept[c] / reflected[c] : s.coatOut;
+  return kept;
+}
+
+Vec3 Bsdf::exactRoughAlbedo() const {
+  if (albedoIsExact_) return roughAlbedo_;
+  Vec3 sum;
+  for (const Summand& s : lobes()) {
+    if (s.group != LobeGroup::Rough) continue;
+    sum += std::visit(
+        [&](const auto& lobe) {
+          const Vec3 wo = frames_[s.frame].wo;
+          Vec3 albedo = s.weight;
+          if constexpr (requires { lobe.exactAlbedo(wo); })
+            albedo *= lobe.exactAlbedo(wo);
+          else
+            albedo *= lobe.albedo(wo);
+          return s.above.weight > 0.0f ? albedo * meanThrough(lobe, s) : albedo;
+        },
+        s.lobe);
+  }
+  return min(sum, Vec3(1));
+}
+
 void Bsdf::finish() {
   roughAlbedo_ = min(roughAlbedo_, Vec3(1));
   for (Summand& s : std::span(lobes_, count_))

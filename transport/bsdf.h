@@ -51,8 +51,12 @@ class Bsdf {
   uint32_t frame(Vec3 shadingNormal, float turns = 0.0f);
   bool full() const { return count_ == kMaxLobes; }
 
-  // Fraction of the flux from wo that leaves through the rough lobes, 0..1.
+  // Fraction of the flux from wo that leaves through the rough lobes, 0..1. Below coats it is an
+  // approximation, good enough to guide samples.
   Vec3 roughAlbedo() const { return roughAlbedo_; }
+  // The same, exact also below coats, for the flux that VPLs send on. There it takes as long as
+  // some thirty values.
+  Vec3 exactRoughAlbedo() const;
   // The same for all lobes: the fraction of the flux from wo that is not absorbed.
   Vec3 albedo() const { return albedo_; }
   bool hasRough() const { return !isBlack(roughAlbedo_); }
@@ -132,10 +136,12 @@ class Bsdf {
   void needFrame() {
     if (frameCount_ == 0) std::construct_at(&frames_[frameCount_++], point_, point_.ns, 0.0f);
   }
-  // Mean of the transmittance of a coat over the light that a rough lobe reflects: the smaller of
-  // that at wo, `most`, and that at wi.
+  // Mean of the transmittance of a coat over a diffuse lobe: of the smaller one of that at wo,
+  // `most`, and that at wi.
+  static float meanThrough(const CoatAbove& above, float most);
+  // The same over the light that the summand, a rough lobe, reflects.
   template <typename L>
-  Vec3 meanThrough(const L& lobe, uint32_t frame, const CoatAbove& above, float most) const;
+  Vec3 meanThrough(const L& lobe, const Summand& s) const;
   Vec3 glossyBound(uint32_t frame, float maxCosine, float cosMirror) const;
   template <TransportMode transport>
   Evaluated evaluate(LobeGroup group, Vec3 wi, Terms terms) const;
@@ -160,7 +166,7 @@ class Bsdf {
   const SurfacePoint& point_;
   // Lambert's law needs no frame: the point's own is made with the first other lobe.
   uint32_t frameCount_ = 0;
-  bool diffuseOnly_ = true, specularIsDelta_ = true, transmits_ = false;
+  bool diffuseOnly_ = true, specularIsDelta_ = true, albedoIsExact_ = true, transmits_ = false;
   float specularProbability_ = 0.0f, survivalProbability_ = 0.0f;
   float rough_ = 0.0f, specular_ = 0.0f;  // sums of the lobes' largest albedos
   Vec3 albedo_, roughAlbedo_, diffuseValue_;
@@ -179,18 +185,17 @@ void Bsdf::add(Vec3 weight, const L& lobe, const CoatAbove& above, uint32_t fram
   if (full()) return;
   if (!kLambert || lobe.group() == LobeGroup::Specular) needFrame();
   Vec3 albedo = weight * lobe.albedo(kLambert ? Vec3() : frames_[frame].wo);
-  if (isBlack(albedo)) return;
-  L prepared = lobe;
-  if constexpr (requires { prepared.prepareFor(Vec3()); }) prepared.prepareFor(frames_[frame].wo);
   const LobeGroup group = lobe.group();
   float coatOut = 1.0f;
   if (above.weight > 0.0f) {
     coatOut = above.through(frames_[above.frame].wo.z);
-    albedo *=
-        group == LobeGroup::Specular ? Vec3(coatOut) : meanThrough(prepared, frame, above, coatOut);
+    const bool diffuse = group == LobeGroup::Rough && std::is_same_v<L, LayeredBase>;
+    albedo *= diffuse ? meanThrough(above, coatOut) : coatOut;
   }
   if (isBlack(albedo)) return;
   const float most = maxComponent(albedo);
+  L prepared = lobe;
+  if constexpr (requires { prepared.prepareFor(Vec3()); }) prepared.prepareFor(frames_[frame].wo);
   new (&lobes_[count_++])
       Summand{prepared, weight, above, coatOut, most, frame, group, lobe.smooth()};
   albedo_ += albedo;
@@ -207,29 +212,7 @@ void Bsdf::add(Vec3 weight, const L& lobe, const CoatAbove& above, uint32_t fram
   roughAlbedo_ += albedo;
   if (kLambert) diffuseValue_ += albedo * (1.0f / kPi);
   diffuseOnly_ &= kLambert;
-}
-
-template <typename L>
-Vec3 Bsdf::meanThrough(const L& lobe, uint32_t frame, const CoatAbove& above, float most) const {
-  const LobeFrame& local = frames_[frame];
-  Vec3 reflected, kept;
-  for (uint32_t i = 0; i < kGoldenPoints; ++i) {
-    Point2 at = goldenPoint(i);
-    if constexpr (std::is_same_v<L, LayeredBase>) {
-      if (!lobe.transmitted) at = goldenDiskSample(i);  // it samples the cosine
-    }
-    LobeSample drawn;
-    if (!lobe.sample(local.wo, 0.5f, at, drawn)) continue;
-    const float pdf = lobe.pdf(local.wo, drawn.wi);
-    if (!(pdf > 0.0f)) continue;
-    const Vec3 weight =
-        lobe.value(local.wo, drawn.wi, TransportMode::Radiance) * (std::fabs(drawn.wi.z) / pdf);
-    const float cosine = std::fabs(dot(frames_[above.frame].z, local.toWorld(drawn.wi)));
-    reflected += weight;
-    kept += weight * std::min(most, above.through(cosine));
-  }
-  for (size_t c = 0; c < 3; ++c) kept[c] = reflected[c] > 0.0f ? kept[c] / reflected[c] : most;
-  return kept;
+  albedoIsExact_ &= !(above.weight > 0.0f) && !requires { lobe.exactAlbedo(Vec3()); };
 }
 
 // Adds the lobes of a model.

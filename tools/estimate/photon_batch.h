@@ -49,7 +49,7 @@ class PhotonBatch {
       intersect(size);
       for (size_t i = 0; i < size; ++i) {
         photons_[i].advance(accel_, hits_[i], [&](const Bsdf& bsdf, Vec3 flux, bool firstBounce) {
-          const Vec3 leaving = flux * bsdf.roughAlbedo();
+          const Vec3 leaving = flux * bsdf.exactRoughAlbedo();
           ++sums.hits;
           deposits_.tally(sums, kReflected, leaving);
           const bool onlyPhotons = !hittable_[i] && photons_[i].firstScatteringIsDelta();

@@ -6,6 +6,7 @@
 //   bool sample(wo, pick, at, out)  samples out.wi; false if absorbed. Smooth lobes also set
 //                                   out.weight; for others, callers evaluate value and pdf
 //   Vec3 albedo(wo)                 fraction of the light from wo that leaves, 0..1
+//   Vec3 exactAlbedo(wo)            optional: the same where albedo() is an approximation
 //   Vec3 bound(wo, maxCosine, cosMirror)
 //                                   upper bound of value * wi.z over wi above the surface whose
 //                                   cosine with z is at most maxCosine and with wo's mirror image

@@ -24,7 +24,7 @@ void tracePhotonPath(const Accelerator& accel, const LightSet& lights, unsigned 
   const PhotonFate fate = followPhoton(
       accel, PhotonWalk(start, depth, rng), [&](const Bsdf& bsdf, Vec3 flux, bool firstBounce) {
         if (!chunk.add(bsdf, path)) return;
-        chunk.rows.flux.push_back(flux * bsdf.roughAlbedo());
+        chunk.rows.flux.push_back(flux * bsdf.exactRoughAlbedo());
         chunk.rows.firstBounceFlux.push_back(firstBounce ? chunk.rows.flux.back() : Vec3{});
       });
   chunk.nonFinite += fate.finite ? 0 : 1;

@@ -30,14 +30,17 @@ bool CoatedMetal::sample(Vec3 wo, float pick, Point2 at, LobeSample& out) const 
   return true;
 }
 
-// A mirror's albedo also stands for that of near-specular metal, but for the energy that facets
-// lose. VPLs send the albedo of rough metal on, so it is a mean over its reflections.
-Vec3 CoatedMetal::albedo(Vec3 wo) const {
-  if (smooth()) return through(wo, wo, wo.z);
-  const float stays = 1.0f - ggxLoss(wo.z, metal.ggx.meanAlpha());
-  if (group() == LobeGroup::Specular) return through(wo, wo, wo.z) * stays;
-  return stays * metal.ggx.meanOverReflected(
-                     wo, [&](Vec3 wi, Vec3 h) { return through(wo, wi, dot(wo, h)); });
+// Albedo of mirror reflection, which approximates that of rough metal; the latter is reduced by the
+// energy that facets lose.
+Vec3 CoatedMetal::albedo(Vec3 wo) const { return through(wo, wo, wo.z) * stays(wo); }
+
+float CoatedMetal::stays(Vec3 wo) const {
+  return smooth() ? 1.0f : 1.0f - ggxLoss(wo.z, metal.ggx.meanAlpha());
+}
+
+Vec3 CoatedMetal::exactAlbedo(Vec3 wo) const {
+  return stays(wo) * metal.ggx.meanOverReflected(
+                         wo, [&](Vec3 wi, Vec3 h) { return through(wo, wi, dot(wo, h)); });
 }
 
 void addLobes(const CoatedConductorModel& model, const MaterialInputs& inputs, Vec3 weight,

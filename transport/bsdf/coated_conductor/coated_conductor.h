@@ -20,6 +20,8 @@ struct CoatedMetal {
   float pdf(Vec3 wo, Vec3 wi) const { return metal.pdf(wo, wi); }
   bool sample(Vec3 wo, float pick, Point2 at, LobeSample& out) const;
   Vec3 albedo(Vec3 wo) const;
+  Vec3 exactAlbedo(Vec3 wo) const;  // rough metal: a mean over its reflections
+  float stays(Vec3 wo) const;       // share that facets do not lose
   Vec3 bound(Vec3 wo, float maxCosine, float cosMirror) const {
     return Vec3((1.0f - coat(wo.z)) * metal.ggx.reflectedBound(wo, maxCosine, cosMirror));
   }

@@ -32,7 +32,7 @@ TEST(CoatedConductor, RoughMetalReflectsItsAlbedo) {
       for (const Vec3 wo : views()) {
         const SurfacePoint p = seenFrom(wo);
         const Bsdf bsdf(scene, p);
-        expectClose(bsdf.roughAlbedo(), meanWeight(bsdf, LobeGroup::Rough), 0.015f,
+        expectClose(bsdf.exactRoughAlbedo(), meanWeight(bsdf, LobeGroup::Rough), 0.015f,
                     std::to_string(alpha) + " below " + std::to_string(thickness) + " from " +
                         std::to_string(wo.z));
       }

@@ -129,7 +129,7 @@ TEST(MetallicRoughness, CoatedBaseReflectsItsAlbedo) {
           const SurfacePoint p = seenFrom(wo);
           const Bsdf bsdf(scene, p);
           const float leaves = mean(meanWeight(bsdf, LobeGroup::Rough));
-          EXPECT_NEAR(mean(bsdf.roughAlbedo()), leaves,
+          EXPECT_NEAR(mean(bsdf.exactRoughAlbedo()), leaves,
                       leaves * (metallic > 0.0f ? 0.012f : 0.007f))
               << metallic << " " << roughness << " below " << coatRoughness << " from " << wo.z;
         }
